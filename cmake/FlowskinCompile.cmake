@@ -1,0 +1,32 @@
+# One interface target with the flags of every target of the project.
+
+add_library(flowskin_compile INTERFACE)
+target_include_directories(flowskin_compile INTERFACE ${CMAKE_SOURCE_DIR})
+# No errno from sqrt and no trapping arithmetic: both would keep loops from being vectorised. Unlike -ffast-math these
+# leave NaN, infinity and the order of sums alone, so results stay the same at any thread count.
+target_compile_options(flowskin_compile INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -fno-math-errno -fno-trapping-math)
+if(FLOWSKIN_NATIVE)
+  target_compile_options(flowskin_compile INTERFACE -march=native)
+endif()
+if(FLOWSKIN_WERROR)
+  target_compile_options(flowskin_compile INTERFACE -Werror)
+endif()
+if(FLOWSKIN_SANITIZE)
+  target_compile_options(flowskin_compile INTERFACE
+    -fsanitize=${FLOWSKIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(flowskin_compile INTERFACE -fsanitize=${FLOWSKIN_SANITIZE})
+endif()
+target_link_libraries(flowskin_compile INTERFACE OpenMP::OpenMP_CXX)
+# Eigen's own threads and run-time alignment asserts stay out of our parallel loops.
+target_compile_definitions(flowskin_compile INTERFACE EIGEN_DONT_PARALLELIZE)
+
+# flowskin_library(<name>): the static library flowskin::<name> of every source file below the current folder.
+function(flowskin_library name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp *.h)
+  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  add_library(flowskin_${name} STATIC ${sources})
+  add_library(flowskin::${name} ALIAS flowskin_${name})
+  set_target_properties(flowskin_${name} PROPERTIES LINKER_LANGUAGE CXX)
+  target_link_libraries(flowskin_${name} PUBLIC flowskin_compile)
+endfunction()

@@ -1,0 +1,36 @@
+# Finds every library the project uses; one that is missing stops the configuration with the name of its Debian package.
+
+function(flowskin_missing what package)
+  message(FATAL_ERROR "FlowSkin needs ${what}, which was not found.\n"
+                      "On Debian: apt-get install ${package}   (tools/build installs everything by itself)")
+endfunction()
+
+macro(flowskin_find name package)
+  find_package(${name} ${ARGN} QUIET)
+  if(NOT ${name}_FOUND)
+    flowskin_missing(${name} ${package})
+  endif()
+endmacro()
+
+flowskin_find(OpenMP "g++ (or libomp-dev for clang)")
+flowskin_find(Eigen3 libeigen3-dev)
+flowskin_find(nanoflann libnanoflann-dev)
+flowskin_find(tinyobjloader libtinyobjloader-dev)
+flowskin_find(nlohmann_json nlohmann-json3-dev)
+flowskin_find(fmt libfmt-dev)
+flowskin_find(spdlog libspdlog-dev)
+flowskin_find(embree libembree-dev 3)
+flowskin_find(CLI11 libcli11-dev)
+
+# stb has no CMake package on Debian, only headers.
+find_path(FLOWSKIN_STB_INCLUDE_DIR stb_image_write.h PATH_SUFFIXES stb)
+if(NOT FLOWSKIN_STB_INCLUDE_DIR)
+  flowskin_missing("stb (stb_image.h and stb_image_write.h)" libstb-dev)
+endif()
+add_library(flowskin_stb INTERFACE)
+target_include_directories(flowskin_stb SYSTEM INTERFACE ${FLOWSKIN_STB_INCLUDE_DIR})
+
+if(FLOWSKIN_TESTS)
+  flowskin_find(GTest libgtest-dev)
+  find_package(benchmark QUIET)
+endif()

@@ -1,0 +1,17 @@
+// Reads triangle meshes from OBJ files (tinyobjloader).
+#pragma once
+
+#include <filesystem>
+
+#include "scenes/scene.h"
+
+namespace flowskin::scenes {
+
+/// Polygons are triangulated; unreferenced vertices are dropped.
+/// @throws SceneError naming the file and what is wrong with it (missing, no triangles, bad index, not finite).
+sph::TriangleMesh read_obj(const std::filesystem::path& file);
+
+/// Scales, rotates and translates; a mirroring scale turns the triangles round so that outside stays outside.
+sph::TriangleMesh place(sph::TriangleMesh mesh, const MeshPlacement& placement);
+
+}  // namespace flowskin::scenes

@@ -1,0 +1,28 @@
+// Reads PLY files (ascii and binary, both byte orders) into named columns.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenes/sources/particle_source.h"
+
+namespace flowskin::scenes {
+
+/// The vertex element as columns of numbers by property name, the faces as triangles (polygons are split as fans).
+struct PlyFile {
+  std::size_t vertex_count = 0;
+  std::map<std::string, std::vector<double>> vertex;  ///< each with vertex_count entries
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<std::string> comments;
+};
+
+/// @throws SceneError naming the file and what is wrong with it (not a PLY, truncated, bad index, ...).
+PlyFile read_ply(const std::filesystem::path& file);
+
+/// Particles from columns x, y, z and, where present, vx, vy, vz (or velocity_x, ...), rest_x, rest_y, rest_z, id, density.
+ParticleState particles_from_ply(const std::filesystem::path& file);
+
+}  // namespace flowskin::scenes

@@ -1,0 +1,44 @@
+// Reads and writes scene files: JSON with comments, checked key by key.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace flowskin::scenes {
+
+/// Something is wrong with a scene file; the message names the file, the key and its place (line), what was expected
+/// and, for an unknown key or value, the nearest valid one.
+struct SceneError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Names that the scene file may use but this library does not know, given by the program.
+struct SceneVocabulary {
+  std::vector<std::string> velocity_methods;
+};
+
+/// One key of the scene file, for documentation and for `flowskin scene --keys`.
+struct SceneKey {
+  std::string path;           ///< such as "fluid.viscosity" or "bodies[].radius"
+  std::string type;           ///< such as "number", "3 numbers", "one of: box, planar, spherical"
+  std::string unit;           ///< such as "m^2/s", "spacings", or "" for none
+  std::string default_value;  ///< as JSON; "required" where there is none
+  std::string meaning;        ///< one sentence
+};
+
+/// @throws SceneError. Meshes that the scene names are read and placed.
+Scene read_scene(const std::filesystem::path& file, const SceneVocabulary& vocabulary);
+/// The same from text; `name` stands for the file in messages, `directory` is where relative names start.
+Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& directory,
+                  const SceneVocabulary& vocabulary);
+/// The scene with every key written out, readable by read_scene; file names are written absolute, so that the file can
+/// stand anywhere.
+std::string write_scene(const Scene& scene);
+/// All keys in the order of the file.
+std::vector<SceneKey> scene_keys();
+
+}  // namespace flowskin::scenes

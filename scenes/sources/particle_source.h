@@ -1,0 +1,52 @@
+// Where a scene's particles come from: one interface for simulation, prescribed motion and recorded sequences.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sph/triangle_mesh.h"
+
+namespace flowskin::scenes {
+
+using sph::Vec3;
+
+/// Particles at one time, in order of ascending id; all arrays have one entry a particle.
+struct ParticleState {
+  double time = 0;  ///< s
+  std::vector<std::uint64_t> ids;
+  std::vector<Vec3> positions;       ///< m
+  std::vector<Vec3> velocities;      ///< m/s
+  std::vector<Vec3> rest_positions;  ///< Place of the material in the first frame (m).
+  std::vector<double> densities;     ///< kg/m^3; 0 where the source knows none
+};
+
+/// What a source tells about itself in the log and in frames.csv; zero where it does not apply.
+struct SourceStatistics {
+  std::uint64_t steps = 0;
+  std::uint64_t left_domain = 0;
+  std::uint64_t wall_crossings = 0;
+  double kinetic_energy = 0;    ///< J
+  double potential_energy = 0;  ///< J
+  double mean_density_error = 0, max_density_error = 0;  ///< |density / rest density - 1|
+  double last_time_step = 0;    ///< s
+  std::string summary;          ///< One line for the log: settings chosen, limits of the step, memory.
+};
+
+/// A sequence of particle states; time only goes forward.
+class ParticleSource {
+ public:
+  virtual ~ParticleSource() = default;
+  /// Particles at the present time, which is 0 at the start.
+  virtual const ParticleState& state() const = 0;
+  /// Goes to `time` (s), not before the present one.
+  virtual void advance_to(double time) = 0;
+  /// Distance of neighbouring particles (m).
+  virtual double spacing() const = 0;
+  virtual SourceStatistics statistics() const = 0;
+  /// True where the sequence ends before `time` (s): a recorded sequence that is too short.
+  virtual bool ends_before(double) const { return false; }
+};
+
+}  // namespace flowskin::scenes

@@ -1,0 +1,151 @@
+// A weakly compressible SPH fluid: the public face of the solver.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sph/triangle_mesh.h"
+
+namespace flowskin::sph {
+
+enum class KernelType { cubic_spline, wendland_c2 };
+
+/// A setting is impossible (negative spacing, a fluid body without particles, ...); the message says which and why.
+struct SettingsError : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+/// The simulation blew up (NaN, a speed or density over its limit); the message says when, which particle, the likely
+/// cause and the setting to change.
+struct BlowUpError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Physical and numerical settings; SI units. Defaults give a stable, nearly incompressible fluid.
+struct SolverSettings {
+  double spacing = 0;              ///< Initial distance of neighbouring particles (m); must be given.
+  double support_radius = 2.0;     ///< Support radius of the kernel, in spacings (2: about 30 neighbours).
+  KernelType kernel = KernelType::wendland_c2;
+  double rest_density = 1000;      ///< kg/m^3
+  double viscosity = 1e-6;         ///< Kinematic viscosity (m^2/s), laminar [Morris et al. 1997].
+  Vec3 gravity{0, -9.81, 0};       ///< m/s^2
+  double max_speed = 0;            ///< Fastest flow expected (m/s); 0: from heights, gravity and initial velocities.
+  double speed_of_sound = 0;       ///< m/s; 0: ten times the fastest flow expected, so that density stays within 1 %.
+  double xsph = 0;                 ///< Share of XSPH smoothing in the velocity that moves particles, 0 to 1.
+  double density_diffusion = 0.1;  ///< Coefficient delta of the density diffusion [Molteni and Colagrossi 2009]; 0: none.
+  double acoustic_cfl = 0.4;       ///< dt <= acoustic_cfl h / (c + |v|), h the smoothing length
+  double viscous_cfl = 0.125;      ///< dt <= viscous_cfl h^2 / nu
+  double force_cfl = 0.25;         ///< dt <= force_cfl sqrt(h / |a|)
+  double max_time_step = 1e9;      ///< s
+  double skin = 0;                 ///< Skin of the Verlet lists, in spacings; 0: the recommended one.
+  Box domain;                      ///< Particles that leave it are removed and counted; an empty box: no limit.
+};
+
+/// A shape filled with fluid at the start, sampled on a lattice of the solver's spacing.
+struct FluidBody {
+  enum class Shape { block, ball, mesh };
+  Shape shape = Shape::block;
+  Box block;                   ///< shape block (m)
+  Vec3 center = Vec3::Zero();  ///< shape ball (m)
+  double radius = 0;           ///< shape ball (m)
+  TriangleMesh mesh;           ///< shape mesh: a closed surface (m)
+  Vec3 velocity = Vec3::Zero();          ///< Initial velocity (m/s).
+  Vec3 angular_velocity = Vec3::Zero();  ///< Initial spin about the body's centroid (rad/s).
+};
+
+/// A disc that pours fluid along its axis.
+struct Emitter {
+  Vec3 center = Vec3::Zero();     ///< m
+  Vec3 direction{0, -1, 0};       ///< Axis; normalised by the solver.
+  double radius = 0;              ///< m
+  double speed = 0;               ///< m/s along the axis
+  double start = 0, stop = 1e30;  ///< Pours while start <= t < stop (s).
+};
+
+/// A wall: any open or closed triangle surface.
+struct Boundary {
+  TriangleMesh mesh;
+  double slip = 0;  ///< 0: no-slip, 1: free slip; between: the share of wall friction taken away.
+};
+
+/// Everything a simulation starts from.
+struct SimulationSetup {
+  SolverSettings settings;
+  std::vector<FluidBody> bodies;
+  std::vector<Emitter> emitters;
+  std::vector<Boundary> boundaries;
+};
+
+/// The fluid particles at one time, in order of ascending id. All arrays have one entry a particle.
+struct FluidState {
+  double time = 0;  ///< s
+  std::vector<std::uint64_t> ids;
+  std::vector<Vec3> positions;       ///< m
+  std::vector<Vec3> velocities;      ///< m/s
+  std::vector<Vec3> rest_positions;  ///< Place of the material in the first frame (m); emitted particles continue the jet backwards.
+  std::vector<double> densities;     ///< kg/m^3
+};
+
+/// Which limit set the time step, and all of them (s).
+struct TimeStepReport {
+  double step = 0, acoustic = 0, viscous = 0, force = 0;
+  std::string limited_by;  ///< "acoustic", "viscous", "force", "output" or "setting"
+};
+
+/// Counters since the start, and seconds spent per stage.
+struct SolverStatistics {
+  std::uint64_t steps = 0;
+  std::uint64_t list_rebuilds = 0;
+  std::uint64_t left_domain = 0;      ///< Particles removed because they left the domain.
+  std::uint64_t wall_crossings = 0;   ///< Particle paths that would have passed a wall and were put back.
+  std::uint64_t emitted = 0;
+  std::uint64_t steps_limited_by_acoustic = 0, steps_limited_by_viscous = 0, steps_limited_by_force = 0;
+  TimeStepReport last_step;
+  double seconds_neighbors = 0, seconds_forces = 0, seconds_integration = 0;
+};
+
+/// Energies of the fluid (J).
+struct Energy {
+  double kinetic = 0, potential = 0;
+};
+
+class SolverImpl;
+
+/// A running simulation. Results do not depend on the number of OpenMP threads.
+class Solver {
+ public:
+  /// @throws SettingsError where the set-up is impossible.
+  explicit Solver(SimulationSetup setup);
+  ~Solver();
+  Solver(Solver&&) noexcept;
+  Solver& operator=(Solver&&) noexcept;
+
+  /// Advances to time `time` (s) exactly, in as many adaptive steps as needed.
+  /// @throws BlowUpError where the fluid blows up; the state of the last whole step stays readable.
+  void advance_to(double time);
+  /// One adaptive step of at most `limit` seconds; returns its length.
+  double step(double limit = 1e30);
+
+  double time() const;
+  std::size_t particle_count() const;
+  std::size_t boundary_particle_count() const;
+  /// Particles in the order of ascending id.
+  FluidState state() const;
+  /// Settings with all automatic values (speed of sound, fastest flow, skin) filled in.
+  const SolverSettings& settings() const;
+  const SolverStatistics& statistics() const;
+  Energy energy() const;
+  Vec3 momentum() const;  ///< kg m/s
+  /// Bytes held by the solver's arrays, lists included.
+  std::size_t memory_bytes() const;
+  /// Boundary particles (m), for pictures and checks.
+  std::vector<Vec3> boundary_positions() const;
+
+ private:
+  std::unique_ptr<SolverImpl> impl_;
+};
+
+}  // namespace flowskin::sph

@@ -1,0 +1,18 @@
+// Errors that end the program, and what its exit status is then.
+#pragma once
+
+#include <stdexcept>
+
+namespace flowskin::tools {
+
+/// The input or the command line is wrong; the message says file, place in it and what was expected. Exit status 2.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The run failed (disk full, blow-up, ...); the message says what was kept and how to go on. Exit status 1.
+struct RunError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace flowskin::tools

@@ -1,0 +1,36 @@
+// What the writers and the renderer see of one frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "scenes/sources/particle_source.h"
+#include "tracking/mesh/surface_mesh.h"
+
+namespace flowskin::tools {
+
+using Vec2f = Eigen::Vector2f;
+using Vec3f = Eigen::Vector3f;
+using Vec3 = Eigen::Vector3d;
+/// Red, green, blue, sRGB-encoded, 0 to 255.
+using Color = std::array<std::uint8_t, 3>;
+
+/// A surface dressed for output: all vertex arrays have one entry a vertex.
+struct SurfaceFrame {
+  double time = 0;                           ///< s
+  tracking::SurfaceMesh mesh;
+  std::vector<Vec3> normals;                 ///< unit, outward
+  std::vector<Color> colors;                 ///< of the rest position
+  std::vector<Vec2f> vertex_uvs;             ///< texture coordinates a vertex (no seams: see corner_uvs)
+  std::vector<std::array<Vec2f, 3>> corner_uvs;  ///< texture coordinates a triangle corner
+};
+
+/// Particles dressed for output.
+struct ParticleFrame {
+  scenes::ParticleState state;
+  std::vector<Color> colors;  ///< of the rest position
+  double radius = 0;          ///< m, for drawing
+};
+
+}  // namespace flowskin::tools

@@ -1,0 +1,50 @@
+// The implicit surface of a set of particles: metaballs with compact support [FMM13, Eq. 13].
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "tracking/field/jet.h"
+#include "tracking/particles.h"
+
+namespace flowskin::tracking {
+
+/// How particles make a field. Defaults are documented in docs/field.md.
+struct FieldSettings {
+  double radius = 0;     ///< Effective radius sigma of a particle (m).
+  double threshold = 0;  ///< T; the surface is where the sum of the kernels equals T.
+  double weight = 1;     ///< w_i, the same for all particles.
+};
+
+/// Radius `radius_in_spacings` times the spacing, and the threshold that puts the surface of a half space filled with a
+/// lattice half a spacing outside the outermost layer, where the fluid ends: so the volume comes out right.
+FieldSettings default_field_settings(double spacing, double radius_in_spacings = 2.5);
+
+/// f(x) = sum_i w (1 - |x - x_i|^2 / sigma^2)^3 - T over the particles nearer than sigma; f > 0 inside.
+/// A snapshot at one time; safe to use from many threads.
+class MetaballField {
+ public:
+  /// `velocities` may be empty: then the time derivatives of the jet are zero.
+  MetaballField(std::vector<Vec3> positions, std::vector<Vec3> velocities, FieldSettings settings);
+  ~MetaballField();
+  MetaballField(MetaballField&&) noexcept;
+  MetaballField& operator=(MetaballField&&) noexcept;
+
+  double value(const Vec3& x) const;
+  /// Value and gradient.
+  double value(const Vec3& x, Vec3& gradient) const;
+  /// All derivatives, in one pass over the neighbours.
+  Jet jet(const Vec3& x) const;
+
+  const FieldSettings& settings() const;
+  const std::vector<Vec3>& positions() const;
+  const std::vector<Vec3>& velocities() const;
+  /// Indices of the particles nearer than `radius` (m), ascending. Clears `found` first.
+  void neighbors(const Vec3& x, double radius, std::vector<int>& found) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace flowskin::tracking

@@ -1,0 +1,24 @@
+// The tracked surface: an indexed triangle mesh whose vertices carry their material coordinates.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "tracking/particles.h"
+
+namespace flowskin::tracking {
+
+using Triangle = std::array<int, 3>;
+
+/// Triangles counter-clockwise seen from outside; the vertex arrays have one entry a vertex.
+struct SurfaceMesh {
+  std::vector<Vec3> positions;       ///< m
+  std::vector<Vec3> rest_positions;  ///< Where the vertex's material was in the first frame (m).
+  std::vector<Vec3> velocities;      ///< m/s, of the last advection
+  std::vector<std::uint64_t> ids;    ///< Persistent; never used again for another vertex.
+  std::vector<Triangle> triangles;
+  std::uint64_t next_id = 0;         ///< The id of the next vertex to be born.
+};
+
+}  // namespace flowskin::tracking

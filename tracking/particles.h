@@ -1,0 +1,22 @@
+// The particles as the tracker sees them. It never knows where they come from.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace flowskin::tracking {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+
+/// Particles at one time, in order of ascending id; all arrays have one entry a particle.
+struct Particles {
+  double time = 0;  ///< s
+  std::vector<std::uint64_t> ids;
+  std::vector<Vec3> positions;       ///< m
+  std::vector<Vec3> velocities;      ///< m/s
+  std::vector<Vec3> rest_positions;  ///< Place of the material in the first frame (m).
+};
+
+}  // namespace flowskin::tracking

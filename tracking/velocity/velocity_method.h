@@ -1,0 +1,36 @@
+// Surface velocity from the field: the interface of all methods, and their registry.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tracking/field/metaball_field.h"
+#include "tracking/mesh/surface_mesh.h"
+
+namespace flowskin::tracking {
+
+/// Computes the velocity of every vertex (m/s). Methods may look at the whole mesh, so they get all of it.
+class VelocityMethod {
+ public:
+  virtual ~VelocityMethod() = default;
+  /// `positions` are the vertices at the time of `field` (m), which may differ from mesh.positions inside a
+  /// Runge-Kutta step; `velocities` gets one entry a vertex. Never NaN: where the field says nothing, zero.
+  virtual void evaluate(const MetaballField& field, const SurfaceMesh& mesh, const std::vector<Vec3>& positions,
+                        std::vector<Vec3>& velocities) const = 0;
+};
+
+/// One line of the registry.
+struct VelocityMethodInfo {
+  std::string name;
+  std::string summary;  ///< One sentence: what it assumes and when to use it.
+  std::unique_ptr<VelocityMethod> (*create)();
+};
+
+/// All methods, in the order of presentation: normal, total, curvature, curvature-belyaev.
+const std::vector<VelocityMethodInfo>& velocity_methods();
+
+/// @throws std::invalid_argument naming the valid methods, where there is none of this name.
+std::unique_ptr<VelocityMethod> make_velocity_method(const std::string& name);
+
+}  // namespace flowskin::tracking
