@@ -75,6 +75,8 @@ struct TextureSpec {
   std::string mapping = "box";              ///< box, planar, spherical
   double tile_size = 0;                     ///< Edge of one copy of the image on the fluid (m); 0: from the size of the fluid
   Vec3 axis{0, 1, 0};                       ///< planar: direction of projection; spherical: pole
+  Vec3 rest_center = Vec3::Zero();          ///< Centre of the fluid at rest (m), which the mapping refers to.
+  double rest_size = 0;                     ///< Longest edge of its bounding box (m); 0: centre and size from the fluid at the start
 };
 
 struct CameraSpec {

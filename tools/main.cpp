@@ -1,0 +1,3 @@
+#include "tools/commands/commands.h"
+
+int main(int argc, char** argv) { return flowskin::tools::run_program(argc, argv); }

@@ -1,0 +1,142 @@
+// The command line of the program; the only file that includes CLI11, which is slow to compile.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <memory>
+#include <new>
+
+#include "scenes/scene_file.h"
+#include "tools/commands/commands.h"
+#include "tools/errors.h"
+#include "tools/pipeline/scene_run.h"
+#include "tools/report/run_log.h"
+#include "tracking/velocity/velocity_method.h"
+
+namespace flowskin::tools {
+
+namespace {
+
+constexpr int kDone = 0, kRunFailed = 1, kInputWrong = 2;
+constexpr int kMaxThreads = 1024;
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const auto& method : tracking::velocity_methods()) names.push_back(method.name);
+  return names;
+}
+
+/// What the user chose, as a call that is made once the whole command line is known to be right.
+struct Choice {
+  RunOptions run;
+  RenderOptions render;
+  bool no_pictures = false, no_video = false;
+  std::vector<std::filesystem::path> info_files;
+  bool scene_defaults = false, scene_keys = false;
+};
+
+CLI::App* add_run(CLI::App& app, Choice& choice) {
+  CLI::App* run =
+      app.add_subcommand("run", "Run a scene: simulate, track the surface, write meshes, pictures and videos");
+  run->add_option("scene", choice.run.scene_file, "Scene file (JSON); see docs/scenes.md")->required();
+  run->add_option("--out", choice.run.out, "Run directory (default: output/<name of the scene file>)");
+  run->add_option("--frames", choice.run.frames, "Number of frames after the first (default: the scene's)")
+      ->check(CLI::Range(0, 1000000));
+  run->add_option("--velocity", choice.run.velocity, "Velocity method (default: the scene's); see `flowskin methods`")
+      ->check(CLI::IsMember(method_names()));
+  run->add_option("--threads", choice.run.threads, "Threads (default: all); results do not depend on it")
+      ->check(CLI::Range(1, kMaxThreads));
+  run->add_flag("--no-pictures", choice.no_pictures, "Neither pictures nor videos");
+  run->add_flag("--no-video", choice.no_video, "Pictures but no videos");
+  run->add_flag("--quiet", choice.run.quiet, "No progress; warnings and errors only");
+  return run;
+}
+
+CLI::App* add_render(CLI::App& app, Choice& choice) {
+  RenderOptions& options = choice.render;
+  CLI::App* render = app.add_subcommand("render", "Make the pictures and videos of a run again");
+  render->add_option("directory", options.directory, "Run directory")->required();
+  render->add_option("--width", options.width, "Pixels (default: the scene's)")->check(CLI::Range(16, 16384));
+  render->add_option("--height", options.height, "Pixels (default: the scene's)")->check(CLI::Range(16, 16384));
+  render->add_option("--samples", options.samples, "Rays a pixel (default: the scene's)")->check(CLI::Range(1, 4096));
+  render->add_option("--camera", options.camera, "Camera position x y z (m)")->expected(3);
+  render->add_option("--look-at", options.look_at, "Point the camera looks at, x y z (m)")->expected(3);
+  render->add_option("--fov", options.vertical_fov, "Vertical field of view (degrees)")->check(CLI::Range(1.0, 170.0));
+  render->add_option("--style", options.style, "textured, solid or normals (default: the scene's)")
+      ->check(CLI::IsMember({"textured", "solid", "normals"}));
+  render->add_option("--what", options.what, "surface, particles or both")
+      ->check(CLI::IsMember({"surface", "particles", "both"}))
+      ->capture_default_str();
+  render->add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, kMaxThreads));
+  render->add_flag("--no-video", choice.no_video, "Pictures but no videos");
+  render->add_flag("--quiet", options.quiet, "No progress; warnings and errors only");
+  return render;
+}
+
+int run_choice(int argc, const char* const* argv) {
+  CLI::App app{
+      "A viscous SPH fluid simulator whose surface is a tracked mesh: textures flow with the fluid.\n"
+      "Start with: flowskin run scenes/stairs.json"};
+  app.name("flowskin");
+  app.set_version_flag("--version", version_text());
+  app.require_subcommand(1);
+  app.footer(
+      "Exit status: 0 done; 1 the run failed; 2 the input or the command line is wrong.\n"
+      "`flowskin COMMAND --help` lists a command's options.");
+  Choice choice;
+  for (int i = 0; i < argc; ++i) choice.run.command_line += (i ? " " : "") + std::string(argv[i]);
+  CLI::App* run = add_run(app, choice);
+  CLI::App* render = add_render(app, choice);
+  CLI::App* info = app.add_subcommand("info", "Say what is in a mesh, particle or scene file, and whether it is sound");
+  info->add_option("files", choice.info_files, "OBJ, PLY or scene files")->required();
+  CLI::App* methods = app.add_subcommand("methods", "List the velocity methods and when to use which");
+  CLI::App* scene = app.add_subcommand("scene", "Describe the scene file");
+  auto* about = scene->add_option_group("about");
+  about->add_flag("--defaults", choice.scene_defaults, "A scene with every key at its default, as JSON");
+  about->add_flag("--keys", choice.scene_keys, "A table of all keys with unit, default and meaning (Markdown)");
+  about->require_option(1);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kInputWrong;
+  }
+  if (*run) {
+    choice.run.pictures = !choice.no_pictures;
+    choice.run.video = !choice.no_video;
+    run_scene(choice.run);
+    return kDone;
+  }
+  if (*render) {
+    choice.render.video = !choice.no_video;
+    return render_command(choice.render);
+  }
+  if (*info) return info_command(choice.info_files);
+  if (*methods) return methods_command();
+  return scene_command(choice.scene_defaults ? "defaults" : "keys");
+}
+
+int complain(const char* message, int status) {
+  fmt::print(stderr, "flowskin: {}\n", message);
+  return status;
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  try {
+    return run_choice(argc, argv);
+  } catch (const InputError& error) {
+    return complain(error.what(), kInputWrong);
+  } catch (const scenes::SceneError& error) {
+    return complain(error.what(), kInputWrong);
+  } catch (const sph::SettingsError& error) {
+    return complain(error.what(), kInputWrong);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory: use fewer particles (a larger spacing) or a larger edge_length", kRunFailed);
+  } catch (const std::exception& error) {
+    return complain(error.what(), kRunFailed);
+  }
+}
+
+}  // namespace flowskin::tools

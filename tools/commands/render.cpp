@@ -1,0 +1,111 @@
+// flowskin render DIR: pictures and videos of a finished run, again.
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+
+#include "scenes/io/ply_reader.h"
+#include "scenes/scene_file.h"
+#include "tools/commands/commands.h"
+#include "tools/errors.h"
+#include "tools/io/surface_writers.h"
+#include "tools/pipeline/interruption.h"
+#include "tools/pipeline/picture_maker.h"
+#include "tools/pipeline/tracker_bridge.h"
+#include "tools/report/progress.h"
+#include "tools/textures/texture_mapping.h"
+
+namespace flowskin::tools {
+
+namespace {
+
+Vec3 vector_of(const std::vector<double>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
+void override_settings(const RenderOptions& options, scenes::RenderSpec& render) {
+  if (options.width > 0) render.width = options.width;
+  if (options.height > 0) render.height = options.height;
+  if (options.samples > 0) render.samples = options.samples;
+  if (options.vertical_fov > 0) render.camera.vertical_fov = options.vertical_fov;
+  if (!options.style.empty()) render.style = options.style;
+  if (!options.camera.empty()) render.camera.position = vector_of(options.camera);
+  if (!options.look_at.empty()) render.camera.look_at = vector_of(options.look_at);
+  if ((render.camera.position - render.camera.look_at).norm() == 0 && !options.camera.empty())
+    throw InputError("--camera and --look-at are the same point; the camera needs a direction");
+}
+
+/// Draws the frames that the run directory holds.
+class Redraw {
+ public:
+  Redraw(const RenderOptions& options, const scenes::Scene& scene, const RunDirectory& directory)
+      : options_(options),
+        scene_(scene),
+        directory_(directory),
+        rest_{scene.texture.rest_center, scene.texture.rest_size} {
+    if (options.what != "particles")
+      surface_frames_ = RunDirectory::frames_in(directory.surface_folder(), "frame_", ".ply");
+    if (options.what != "surface")
+      particle_frames_ = RunDirectory::frames_in(directory.particle_folder(), "frame_", ".ply");
+    if (surface_frames_.empty() && particle_frames_.empty())
+      throw InputError(
+          fmt::format("{} has no frames to draw: surface/frame_*.ply or particles/frame_*.ply are needed "
+                      "(keys output.ply and output.particles of the scene)",
+                      directory.root().string()));
+  }
+
+  void draw() {
+    std::filesystem::create_directories(directory_.image_folder());
+    const Image texture = make_texture(scene_.texture.image, scene_.directory);
+    const PictureMaker pictures(directory_, scene_, texture, fluid_at_start());
+    const int total = int(surface_frames_.size() + particle_frames_.size());
+    Progress progress("picture", total, options_.quiet ? Progress::Mode::quiet : Progress::Mode::automatic);
+    int done = 0;
+    for (int frame : surface_frames_) {
+      const auto mesh = read_surface_ply(directory_.surface(frame, ".ply"));
+      pictures.draw(frame, dress(mesh, frame / scene_.frame_rate, scene_.texture, rest_));
+      step(progress, ++done);
+    }
+    for (int frame : particle_frames_) {
+      const auto state = scenes::particles_from_ply(directory_.particles(frame, ".ply"));
+      pictures.draw(frame, dress(state, scene_.particles.spacing, rest_));
+      step(progress, ++done);
+    }
+  }
+
+ private:
+  sph::Box fluid_at_start() const {
+    if (!particle_frames_.empty())
+      return bounds(scenes::particles_from_ply(directory_.particles(particle_frames_.front(), ".ply")).positions);
+    return bounds(read_surface_ply(directory_.surface(surface_frames_.front(), ".ply")).positions);
+  }
+
+  static void step(Progress& progress, int done) {
+    progress.update(done, "");
+    if (interrupted()) throw RunError("interrupted; the pictures made so far are whole");
+  }
+
+  const RenderOptions& options_;
+  const scenes::Scene& scene_;
+  const RunDirectory& directory_;
+  RestFrame rest_;
+  std::vector<int> surface_frames_, particle_frames_;
+};
+
+}  // namespace
+
+int render_command(const RenderOptions& options) {
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  const RunDirectory directory(options.directory);
+  directory.check_is_run();
+  scenes::Scene scene = scenes::read_scene(directory.scene(), scene_vocabulary());
+  override_settings(options, scene.render);
+  catch_interruptions();
+  Redraw(options, scene, directory).draw();
+  make_contact_sheet(directory, scene.frame_rate);
+  if (options.video)
+    make_videos(directory, scene.frame_rate, [&](const std::string& line) {
+      if (!options.quiet) fmt::print(stderr, "{}\n", line);
+    });
+  return 0;
+}
+
+}  // namespace flowskin::tools

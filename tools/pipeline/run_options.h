@@ -1,0 +1,22 @@
+// What the command line may say about a run.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace flowskin::tools {
+
+struct RunOptions {
+  std::filesystem::path scene_file;
+  std::filesystem::path out;            ///< empty: output/<name of the scene file>
+  std::optional<int> frames;            ///< instead of the scene's
+  std::optional<std::string> velocity;  ///< instead of the scene's
+  int threads = 0;                      ///< 0: as many as the machine has
+  bool pictures = true;
+  bool video = true;
+  bool quiet = false;
+  std::string command_line;  ///< as typed, for the log
+};
+
+}  // namespace flowskin::tools

@@ -1,0 +1,34 @@
+#include "tools/pipeline/tracker_bridge.h"
+
+namespace flowskin::tools {
+
+tracking::Particles to_particles(const scenes::ParticleState& state) {
+  return {state.time, state.ids, state.positions, state.velocities, state.rest_positions};
+}
+
+tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
+  const scenes::TrackingSpec& spec = scene.tracking;
+  const double spacing = scene.particles.spacing;
+  tracking::TrackerSettings settings;
+  settings.spacing = spacing;
+  settings.field = tracking::default_field_settings(spacing, spec.radius);
+  if (spec.threshold > 0) settings.field.threshold = spec.threshold;
+  settings.velocity = spec.velocity;
+  settings.integrator = spec.integrator == "euler" ? tracking::Integrator::euler
+                        : spec.integrator == "rk4" ? tracking::Integrator::rk4
+                                                   : tracking::Integrator::rk2;
+  settings.max_motion = spec.max_motion;
+  settings.edge_length = spec.edge_length * spacing;
+  settings.fairing_iterations = spec.fairing_iterations;
+  settings.fairing_stiffness = spec.fairing_stiffness;
+  settings.guard = spec.guard;
+  return settings;
+}
+
+scenes::SceneVocabulary scene_vocabulary() {
+  scenes::SceneVocabulary vocabulary;
+  for (const auto& method : tracking::velocity_methods()) vocabulary.velocity_methods.push_back(method.name);
+  return vocabulary;
+}
+
+}  // namespace flowskin::tools

@@ -1,0 +1,69 @@
+#include "tools/report/frames_csv.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <string>
+
+#include "tools/io/atomic_file.h"
+
+namespace flowskin::tools {
+
+namespace {
+
+/// Calls visit(name, value) for each column: the header and the rows cannot disagree.
+template <class Visit>
+void for_each_column(const FrameRow& row, Visit visit) {
+  visit("frame", row.frame);
+  visit("time", row.time);
+  visit("particles", row.particles);
+  visit("vertices", row.vertices);
+  visit("triangles", row.triangles);
+  visit("components", row.components);
+  visit("euler", row.euler);
+  visit("volume", row.volume);
+  visit("expected_volume", row.expected_volume);
+  visit("area", row.area);
+  visit("kinetic_energy", row.kinetic_energy);
+  visit("potential_energy", row.potential_energy);
+  visit("max_distance", row.max_distance);
+  visit("smallest_angle", row.smallest_angle);
+  visit("stretch_median", row.stretch_median);
+  visit("stretch_p99", row.stretch_p99);
+  visit("texture_drift", row.texture_drift);
+  visit("substeps", row.substeps);
+  visit("reextractions", row.reextractions);
+  visit("kept_ids", row.kept_ids);
+  visit("steps", row.steps);
+  visit("time_step", row.time_step);
+  visit("mean_density_error", row.mean_density_error);
+  visit("max_density_error", row.max_density_error);
+  visit("left_domain", row.left_domain);
+  visit("wall_crossings", row.wall_crossings);
+  visit("seconds_source", row.seconds_source);
+  visit("seconds_tracking", row.seconds_tracking);
+  visit("seconds_guard", row.seconds_guard);
+  visit("seconds_writing", row.seconds_writing);
+  visit("seconds_pictures", row.seconds_pictures);
+}
+
+}  // namespace
+
+void write_frames_csv(const std::filesystem::path& file, const std::vector<FrameRow>& rows) {
+  std::string text;
+  for_each_column(FrameRow{},
+                  [&](const char* name, auto) { text += fmt::format("{}{}", text.empty() ? "" : ",", name); });
+  text += '\n';
+  for (const FrameRow& row : rows) {
+    bool first = true;
+    for_each_column(row, [&](const char*, auto value) {
+      if (!first) text += ',';
+      first = false;
+      fmt::format_to(std::back_inserter(text), "{}", value);
+    });
+    text += '\n';
+  }
+  write_file(file, text);
+}
+
+}  // namespace flowskin::tools

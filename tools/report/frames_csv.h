@@ -1,0 +1,37 @@
+// frames.csv: one row a frame.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace flowskin::tools {
+
+/// What is known about one frame; the columns of frames.csv in this order. docs/files.md explains each.
+struct FrameRow {
+  int frame = 0;
+  double time = 0;  ///< s
+  std::uint64_t particles = 0;
+  std::uint64_t vertices = 0, triangles = 0;
+  int components = 0, euler = 0;
+  double volume = 0, expected_volume = 0;           ///< m^3: of the tracked surface, of a fresh extraction
+  double area = 0;                                  ///< m^2
+  double kinetic_energy = 0, potential_energy = 0;  ///< J
+  double max_distance = 0;                          ///< largest |f|/|grad f| at a vertex (m)
+  double smallest_angle = 0;                        ///< degrees
+  double stretch_median = 0, stretch_p99 = 0;       ///< larger singular value of the map from rest to present
+  double texture_drift = 0;  ///< m: median distance between the rest positions of surface and particles beneath
+  int substeps = 0;
+  int reextractions = 0;    ///< how often the guard replaced the mesh in this frame
+  int kept_ids = 0;         ///< vertices that were there in the frame before
+  std::uint64_t steps = 0;  ///< solver steps since the start
+  double time_step = 0;     ///< s, the last one
+  double mean_density_error = 0, max_density_error = 0;
+  std::uint64_t left_domain = 0, wall_crossings = 0;  ///< since the start
+  double seconds_source = 0, seconds_tracking = 0, seconds_guard = 0, seconds_writing = 0, seconds_pictures = 0;
+};
+
+/// Writes all rows, whole or not at all. @throws RunError
+void write_frames_csv(const std::filesystem::path& file, const std::vector<FrameRow>& rows);
+
+}  // namespace flowskin::tools

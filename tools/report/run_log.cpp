@@ -1,0 +1,60 @@
+#include "tools/report/run_log.h"
+
+#include <fmt/format.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "tools/errors.h"
+
+namespace flowskin::tools {
+
+struct RunLog::Impl {
+  std::shared_ptr<spdlog::sinks::basic_file_sink_st> file;
+  std::shared_ptr<spdlog::sinks::stderr_sink_st> terminal;
+  std::unique_ptr<spdlog::logger> logger;
+};
+
+RunLog::RunLog(const std::filesystem::path& file, bool quiet) : impl_(std::make_unique<Impl>()) {
+  try {
+    impl_->file = std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string(), true);
+  } catch (const spdlog::spdlog_ex& error) {
+    throw RunError(fmt::format("cannot write the log {}: {}", file.string(), error.what()));
+  }
+  impl_->file->set_pattern("%Y-%m-%d %H:%M:%S  %v");
+  impl_->terminal = std::make_shared<spdlog::sinks::stderr_sink_st>();
+  impl_->terminal->set_pattern("%v");
+  impl_->terminal->set_level(quiet ? spdlog::level::warn : spdlog::level::info);
+  impl_->logger = std::make_unique<spdlog::logger>("run", spdlog::sinks_init_list{impl_->file, impl_->terminal});
+  impl_->logger->set_level(spdlog::level::debug);
+  impl_->logger->flush_on(spdlog::level::debug);
+}
+
+RunLog::~RunLog() = default;
+
+void RunLog::info(const std::string& message) { impl_->logger->info("{}", message); }
+void RunLog::detail(const std::string& message) { impl_->logger->debug("{}", message); }
+void RunLog::warning(const std::string& message) { impl_->logger->warn("{}", message); }
+
+std::string version_text() { return "flowskin " FLOWSKIN_VERSION; }
+
+std::string machine_text() {
+  std::string processor = "unknown processor";
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);)
+    if (line.rfind("model name", 0) == 0) {
+      processor = line.substr(line.find(':') + 2);
+      break;
+    }
+  utsname system{};
+  uname(&system);
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE)) / (1 << 30);
+  return fmt::format("{}, {} cores, {:.0f} GiB, {} {}", processor, sysconf(_SC_NPROCESSORS_ONLN), memory,
+                     system.sysname, system.release);
+}
+
+}  // namespace flowskin::tools
