@@ -1,0 +1,127 @@
+#include "end_to_end/program.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "tools/textures/image.h"
+
+namespace flowskin::end_to_end {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+}  // namespace
+
+Result run_program(const std::vector<std::string>& command) {
+  std::string line;
+  for (const std::string& word : command) line += quoted(word) + " ";
+  Result result;
+  FILE* pipe = popen((line + "2>&1 </dev/null").c_str(), "r");
+  if (!pipe) throw std::runtime_error("popen failed");
+  std::array<char, 4096> buffer{};
+  while (const std::size_t count = fread(buffer.data(), 1, buffer.size(), pipe))
+    result.output.append(buffer.data(), count);
+  const int status = pclose(pipe);
+  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return result;
+}
+
+Result run_flowskin(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{FLOWSKIN_BINARY_DIR "/flowskin"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return run_program(command);
+}
+
+bool have_program(const std::string& name) { return run_program({"which", name}).status == 0; }
+
+fs::path fresh_folder(const std::string& name) {
+  const fs::path folder = fs::temp_directory_path() / ("flowskin_" + name + "_" + std::to_string(getpid()));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+std::string scene(const std::string& name) { return FLOWSKIN_SOURCE_DIR "/scenes/" + name; }
+
+std::string bytes(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream content;
+  content << stream.rdbuf();
+  return content.str();
+}
+
+std::vector<std::string> files_below(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) names.push_back(fs::relative(entry.path(), folder).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string ffprobe(const fs::path& file, const std::string& entries) {
+  std::string output = run_program({"ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0",
+                                    "-show_entries", "stream=" + entries, "-of", "csv=p=0", file.string()})
+                           .output;
+  while (!output.empty() && (output.back() == '\n' || output.back() == ',')) output.pop_back();
+  return output;
+}
+
+double mean_pixel_difference(const fs::path& a, const fs::path& b) {
+  const tools::Image first = tools::read_image(a), second = tools::read_image(b);
+  if (first.width != second.width || first.height != second.height) return std::numeric_limits<double>::infinity();
+  double sum = 0;
+  for (std::size_t i = 0; i < first.pixels.size(); ++i)
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      sum += std::abs(int(first.pixels[i][channel]) - int(second.pixels[i][channel]));
+  return sum / double(3 * first.pixels.size());
+}
+
+Table::Table(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  columns_ = split(line);
+  while (std::getline(stream, line)) cells_.push_back(split(line));
+}
+
+std::size_t Table::index(const std::string& column) const {
+  const auto found = std::find(columns_.begin(), columns_.end(), column);
+  if (found == columns_.end()) throw std::runtime_error("no column " + column);
+  return std::size_t(found - columns_.begin());
+}
+
+double Table::number(const std::string& column, std::size_t row) const {
+  return std::stod(cells_.at(row).at(index(column)));
+}
+
+std::vector<std::string> Table::text(const std::string& column) const {
+  std::vector<std::string> cells;
+  for (const auto& row : cells_) cells.push_back(row.at(index(column)));
+  return cells;
+}
+
+}  // namespace flowskin::end_to_end

@@ -1,0 +1,94 @@
+#include "tools/pipeline/frame_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tracking/mesh/mesh_measures.h"
+#include "tracking/mesh/texture_stretch.h"
+
+namespace flowskin::tools {
+
+namespace {
+
+/// The value below which `share` of the values lie; 0 where there are none.
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto nth = values.begin() + std::ptrdiff_t(std::floor(share * double(values.size() - 1)));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+void describe_surface(const tracking::SurfaceMesh& mesh, FrameRow& row) {
+  row.vertices = mesh.positions.size();
+  row.triangles = mesh.triangles.size();
+  row.euler = tracking::euler_characteristic(mesh.positions, mesh.triangles);
+  row.smallest_angle = tracking::mesh_quality(mesh.positions, mesh.triangles).smallest_angle * 180 / std::numbers::pi;
+  std::vector<double> stretch;
+  for (const auto& triangle : tracking::texture_stretch(mesh)) stretch.push_back(triangle.largest);
+  row.stretch_median = quantile(stretch, 0.5);
+  row.stretch_p99 = quantile(stretch, 0.99);
+}
+
+void describe_source(const scenes::ParticleSource& source, FrameRow& row) {
+  const scenes::SourceStatistics statistics = source.statistics();
+  row.particles = source.state().positions.size();
+  row.kinetic_energy = statistics.kinetic_energy;
+  row.potential_energy = statistics.potential_energy;
+  row.steps = statistics.steps;
+  row.time_step = statistics.last_time_step;
+  row.mean_density_error = statistics.mean_density_error;
+  row.max_density_error = statistics.max_density_error;
+  row.left_domain = statistics.left_domain;
+  row.wall_crossings = statistics.wall_crossings;
+}
+
+int count_common(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
+  int common = 0;
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    common += *i == *j;
+    const bool step_i = *i <= *j, step_j = *j <= *i;
+    i += step_i;
+    j += step_j;
+  }
+  return common;
+}
+
+}  // namespace
+
+void FrameStatistics::add(const tracking::TrackerReport& report) {
+  substeps_ += report.substeps;
+  seconds_guard_ += report.seconds_guard;
+  if (!report.reextracted) return;
+  ++reextractions_;
+  last_reason_ = report.reason;
+}
+
+FrameRow FrameStatistics::finish_frame(int frame, const scenes::ParticleSource& source,
+                                       const tracking::Tracker* tracker, const SurfaceFrame* surface) {
+  FrameRow row;
+  row.frame = frame;
+  row.time = source.state().time;
+  describe_source(source, row);
+  if (tracker && surface) {
+    const tracking::TrackerReport& report = tracker->report();
+    row.components = report.components;
+    row.volume = report.volume;
+    row.expected_volume = report.expected_volume;
+    row.area = report.area;
+    row.max_distance = report.max_distance;
+    describe_surface(surface->mesh, row);
+    std::vector<std::uint64_t> ids = surface->mesh.ids;
+    std::sort(ids.begin(), ids.end());
+    row.kept_ids = count_common(ids, previous_ids_);
+    previous_ids_ = std::move(ids);
+  }
+  row.substeps = substeps_;
+  row.reextractions = reextractions_;
+  row.seconds_guard = seconds_guard_;
+  frames_reextracted_ += reextractions_ > 0;
+  substeps_ = reextractions_ = 0;
+  return row;
+}
+
+}  // namespace flowskin::tools
