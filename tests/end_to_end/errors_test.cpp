@@ -1,0 +1,112 @@
+// What the program does when something is wrong: one clear message, the right exit status, nothing lost.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "end_to_end/program.h"
+
+namespace flowskin {
+namespace {
+
+namespace fs = std::filesystem;
+using end_to_end::run_flowskin;
+
+class ProgramErrors : public ::testing::Test {
+ protected:
+  void SetUp() override { folder_ = end_to_end::fresh_folder("errors"); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  static void expect(const end_to_end::Result& result, int status, const std::vector<std::string>& words) {
+    EXPECT_EQ(result.status, status) << result.output;
+    for (const std::string& word : words) EXPECT_NE(result.output.find(word), std::string::npos) << result.output;
+    EXPECT_LT(std::count(result.output.begin(), result.output.end(), '\n'), 12) << result.output;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ProgramErrors, HelpAndVersion) {
+  expect(run_flowskin({"--version"}), 0, {"flowskin 0."});
+  EXPECT_EQ(run_flowskin({"--help"}).status, 0);
+  for (const char* command : {"run", "render", "info", "methods", "scene"})
+    EXPECT_NE(run_flowskin({"--help"}).output.find(command), std::string::npos) << command;
+  EXPECT_EQ(run_flowskin({"run", "--help"}).status, 0);
+  expect(run_flowskin({"methods"}), 0, {"normal", "total", "curvature"});
+}
+
+TEST_F(ProgramErrors, WrongCommandLines) {
+  expect(run_flowskin({}), 2, {"subcommand"});
+  expect(run_flowskin({"fly"}), 2, {"fly"});
+  expect(run_flowskin({"run"}), 2, {"scene"});
+  expect(run_flowskin({"run", end_to_end::scene("stairs_preview.json"), "--velocity", "curvatur"}), 2,
+         {"--velocity", "curvature"});
+  expect(run_flowskin({"run", end_to_end::scene("stairs_preview.json"), "--threads", "0"}), 2, {"--threads"});
+}
+
+TEST_F(ProgramErrors, WrongScenes) {
+  expect(run_flowskin({"run", (folder_ / "none.json").string()}), 2, {"none.json"});
+  expect(run_flowskin({"run", write("broken.json", "{ \"frames\": ")}), 2, {"broken.json"});
+  expect(run_flowskin({"run", write("key.json", "{\n  \"frame\": 3\n}")}), 2, {"key.json", "frame", "frames", "2"});
+}
+
+TEST_F(ProgramErrors, AForeignFolderIsNotTouched) {
+  const fs::path foreign = folder_ / "thesis";
+  fs::create_directories(foreign);
+  std::ofstream(foreign / "chapter1.txt") << "years of work";
+  expect(run_flowskin({"run", end_to_end::scene("stairs_preview.json"), "--out", foreign.string()}), 2,
+         {"thesis", "not empty"});
+  EXPECT_EQ(end_to_end::bytes(foreign / "chapter1.txt"), "years of work");
+}
+
+TEST_F(ProgramErrors, OutIsAFile) {
+  const std::string file = write("file", "x");
+  expect(run_flowskin({"run", end_to_end::scene("stairs_preview.json"), "--out", file}), 2, {file});
+  EXPECT_EQ(end_to_end::bytes(file), "x");
+}
+
+TEST_F(ProgramErrors, RenderWithoutARun) {
+  expect(run_flowskin({"render", folder_.string()}), 2, {"scene.json"});
+  expect(run_flowskin({"render", (folder_ / "nowhere").string()}), 2, {"nowhere"});
+}
+
+TEST_F(ProgramErrors, InfoOfSomethingElse) {
+  expect(run_flowskin({"info", write("notes.txt", "hello")}), 2, {"notes.txt"});
+  expect(run_flowskin({"info", write("bad.ply", "ply\nformat ascii 1.0\nelement vertex 5\n")}), 2, {"bad.ply"});
+}
+
+TEST_F(ProgramErrors, InterruptionKeepsWholeFrames) {
+  const fs::path out = folder_ / "run";
+  const pid_t child = fork();
+  if (child == 0) {
+    execl(FLOWSKIN_BINARY_DIR "/flowskin", "flowskin", "run", end_to_end::scene("stairs_preview.json").c_str(), "--out",
+          out.c_str(), "--quiet", "--no-pictures", nullptr);
+    _exit(127);
+  }
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+  while (!fs::exists(out / "surface/frame_0002.ply") && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  const end_to_end::Table table(out / "frames.csv");
+  EXPECT_GE(table.rows(), 3u);
+  for (const auto& name : end_to_end::files_below(out))
+    if (name.find("surface/frame_") == 0 && name.find(".ply") != std::string::npos) {
+      EXPECT_EQ(run_flowskin({"info", (out / name).string()}).status, 0) << name;
+    }
+}
+
+}  // namespace
+}  // namespace flowskin
