@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "scenes/sources/particle_source.h"
@@ -18,12 +19,13 @@ using Color = std::array<std::uint8_t, 3>;
 
 /// A surface dressed for output: all vertex arrays have one entry a vertex.
 struct SurfaceFrame {
-  double time = 0;                           ///< s
+  double time = 0;  ///< s
   tracking::SurfaceMesh mesh;
-  std::vector<Vec3> normals;                 ///< unit, outward
-  std::vector<Color> colors;                 ///< of the rest position
-  std::vector<Vec2f> vertex_uvs;             ///< texture coordinates a vertex (no seams: see corner_uvs)
+  std::vector<Vec3> normals;                     ///< unit, outward
+  std::vector<Color> colors;                     ///< of the rest position
+  std::vector<Vec2f> vertex_uvs;                 ///< texture coordinates a vertex (no seams: see corner_uvs)
   std::vector<std::array<Vec2f, 3>> corner_uvs;  ///< texture coordinates a triangle corner
+  std::string texture_file;  ///< image's name beside the written files, for PLY readers; may be empty
 };
 
 /// Particles dressed for output.

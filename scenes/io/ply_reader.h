@@ -22,7 +22,8 @@ struct PlyFile {
 /// @throws SceneError naming the file and what is wrong with it (not a PLY, truncated, bad index, ...).
 PlyFile read_ply(const std::filesystem::path& file);
 
-/// Particles from columns x, y, z and, where present, vx, vy, vz (or velocity_x, ...), rest_x, rest_y, rest_z, id, density.
+/// Particles from columns x, y, z and, where present, vx, vy, vz (or velocity_x, ...), rest_x, rest_y, rest_z, id,
+/// density.
 ParticleState particles_from_ply(const std::filesystem::path& file);
 
 }  // namespace flowskin::scenes
