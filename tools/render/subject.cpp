@@ -1,0 +1,138 @@
+#include "tools/render/subject.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "tools/errors.h"
+#include "tools/render/color.h"
+
+namespace flowskin::tools {
+namespace {
+
+void require_length(const char* what, std::size_t length, std::size_t expected, const char* of) {
+  if (length == expected) return;
+  throw InputError(fmt::format("a frame to draw has {} {} for {} {}", length, what, expected, of));
+}
+
+std::vector<Vec3f> moved_to(const std::vector<Vec3>& points, const Vec3& origin, const char* what) {
+  std::vector<Vec3f> moved;
+  moved.reserve(points.size());
+  for (const Vec3& point : points) {
+    moved.push_back((point - origin).cast<float>());
+    if (!moved.back().allFinite()) {
+      throw InputError(fmt::format("{} {} of a frame to draw is not a finite place", what, moved.size() - 1));
+    }
+  }
+  return moved;
+}
+
+void check_surface(const SurfaceFrame& frame, Style style) {
+  const std::size_t vertices = frame.mesh.positions.size(), triangles = frame.mesh.triangles.size();
+  require_length("normals", frame.normals.size(), vertices, "vertices");
+  if (style == Style::solid) require_length("colours", frame.colors.size(), vertices, "vertices");
+  if (style == Style::textured) {
+    require_length("corner texture coordinates", frame.corner_uvs.size(), triangles, "triangles");
+  }
+  for (std::size_t t = 0; t < triangles; ++t) {
+    for (const int corner : frame.mesh.triangles[t]) {
+      if (corner < 0 || std::size_t(corner) >= vertices) {
+        throw InputError(fmt::format("triangle {} of a frame to draw names vertex {} of {}", t, corner, vertices));
+      }
+    }
+  }
+}
+
+// Linear light whose sRGB code is the given value.
+Vec3f decode(const Vec3f& srgb) {
+  return {srgb_to_linear(srgb.x()), srgb_to_linear(srgb.y()), srgb_to_linear(srgb.z())};
+}
+
+}  // namespace
+
+Style style_from_name(const std::string& name) {
+  if (name == "textured") return Style::textured;
+  if (name == "solid") return Style::solid;
+  if (name == "normals") return Style::normals;
+  throw InputError(fmt::format("render.style is \"{}\": expected textured, solid or normals", name));
+}
+
+SurfaceSubject::SurfaceSubject(const TraceDevice& device, const SurfaceFrame& frame, Style style, const MipMap& texture,
+                               const Vec3& origin)
+    : Subject(device), frame_(frame), texture_(texture), style_(style) {
+  check_surface(frame, style);
+  positions_ = moved_to(frame.mesh.positions, origin, "vertex");
+  normals_.reserve(frame.normals.size());
+  for (const Vec3& normal : frame.normals) normals_.push_back(normal.cast<float>());
+  scene_.add_triangles(positions_, frame.mesh.triangles);
+  scene_.commit();
+}
+
+Vec3f SurfaceSubject::styled_color(const RayHit& hit, const Vec3f& normal, float footprint) const {
+  const auto& triangle = frame_.mesh.triangles[hit.primitive];
+  const float w = 1 - hit.u - hit.v;
+  switch (style_) {
+    case Style::textured: {
+      const auto& uvs = frame_.corner_uvs[hit.primitive];
+      const Vec2f uv = w * uvs[0] + hit.u * uvs[1] + hit.v * uvs[2];
+      const Vec2f e1 = uvs[1] - uvs[0], e2 = uvs[2] - uvs[0];
+      const Vec3f& a = positions_[std::size_t(triangle[0])];
+      const float area =
+          (positions_[std::size_t(triangle[1])] - a).cross(positions_[std::size_t(triangle[2])] - a).norm();
+      const float texture_area = std::abs(e1.x() * e2.y() - e1.y() * e2.x());
+      const float density = area > 0 ? texture_area / area : 0;  // squares of the texture per m^2
+      return texture_.sample(uv, footprint * density * texture_.texels());
+    }
+    case Style::solid:
+      return w * to_linear(frame_.colors[std::size_t(triangle[0])]) +
+             hit.u * to_linear(frame_.colors[std::size_t(triangle[1])]) +
+             hit.v * to_linear(frame_.colors[std::size_t(triangle[2])]);
+    case Style::normals:
+      return decode(0.5f * (Vec3f::Ones() + normal));
+  }
+  return Vec3f::Constant(0.5f);
+}
+
+Material SurfaceSubject::material(const RayHit& hit, const Vec3f& point, float footprint) const {
+  const auto& triangle = frame_.mesh.triangles[hit.primitive];
+  const std::array<float, 3> weights{1 - hit.u - hit.v, hit.u, hit.v};
+  Material material;
+  Vec3f smooth = Vec3f::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3f& normal = normals_[std::size_t(triangle[k])];
+    smooth += weights[k] * normal;
+    // Against shadows of the single flat triangles on the smooth surface: the point is moved to where the tangent
+    // planes of the corners meet, weighted (J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021).
+    const float below = (point - positions_[std::size_t(triangle[k])]).dot(normal);
+    if (below < 0) material.lift -= weights[k] * below * normal;
+  }
+  const float length = smooth.norm();
+  material.normal = length > 1e-6f ? Vec3f(smooth / length) : hit.normal;
+  if (!material.normal.allFinite()) material.normal = hit.normal;
+  if (!material.lift.allFinite()) material.lift.setZero();
+  material.reflectance = styled_color(hit, material.normal, footprint);
+  material.unlit = style_ == Style::normals;
+  return material;
+}
+
+ParticleSubject::ParticleSubject(const TraceDevice& device, const ParticleFrame& frame, const Vec3& origin)
+    : Subject(device), frame_(frame) {
+  const auto& positions = frame.state.positions;
+  require_length("colours", frame.colors.size(), positions.size(), "particles");
+  if (!positions.empty() && !(frame.radius > 0 && std::isfinite(frame.radius))) {
+    throw InputError(fmt::format("particles to draw have the radius {}: expected a positive one", frame.radius));
+  }
+  scene_.add_balls(moved_to(positions, origin, "particle"), float(frame.radius));
+  scene_.commit();
+}
+
+Material ParticleSubject::material(const RayHit& hit, const Vec3f&, float) const {
+  Material material;
+  material.normal = hit.normal;
+  material.reflectance = to_linear(frame_.colors[hit.primitive]);
+  return material;
+}
+
+}  // namespace flowskin::tools
