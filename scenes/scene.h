@@ -1,4 +1,5 @@
-// A scene as read from its file, all defaults filled in. SI units; lengths are absolute unless a comment says otherwise.
+// A scene as read from its file, all defaults filled in. SI units; lengths are absolute unless a comment says
+// otherwise.
 #pragma once
 
 #include <array>
@@ -21,82 +22,82 @@ struct MeshPlacement {
 };
 
 struct BodySpec {
-  sph::FluidBody body;   ///< With its mesh already read and placed.
-  MeshPlacement mesh;    ///< shape mesh only
+  sph::FluidBody body;  ///< With its mesh already read and placed.
+  MeshPlacement mesh;   ///< shape mesh only
 };
 
 struct BoundarySpec {
   sph::Boundary boundary;  ///< With its mesh already read and placed.
   MeshPlacement mesh;
-  bool visible = true;     ///< Drawn in the pictures.
+  bool visible = true;                            ///< Drawn in the pictures.
   std::array<double, 3> color{0.55, 0.53, 0.50};  ///< Linear reflectance, 0 to 1.
 };
 
 /// Prescribed motion of the particles, by name, with the numbers it needs.
 struct MotionSpec {
-  std::string type = "rotation";          ///< rotation, translation, shear, stretch, vortex (docs/scenes.md gives the formulas)
-  Vec3 center = Vec3::Zero();             ///< m: rotation, stretch
-  Vec3 angular_velocity = Vec3::Zero();   ///< rad/s: rotation
-  Vec3 velocity = Vec3::Zero();           ///< m/s: translation (added to every motion)
-  double rate = 1;                        ///< 1/s: shear, stretch; m/s amplitude: vortex
+  std::string type = "rotation";  ///< rotation, translation, shear, stretch, vortex (docs/scenes.md gives the formulas)
+  Vec3 center = Vec3::Zero();     ///< m: rotation, stretch
+  Vec3 angular_velocity = Vec3::Zero();  ///< rad/s: rotation
+  Vec3 velocity = Vec3::Zero();          ///< m/s: translation (added to every motion)
+  double rate = 1;                       ///< 1/s: shear, stretch; m/s amplitude: vortex
 };
 
 struct RecordedSpec {
-  std::string files;             ///< Pattern such as run/particles/frame_*.ply, relative to the scene file.
+  std::string files;                 ///< Pattern such as run/particles/frame_*.ply, relative to the scene file.
   double frame_interval = 1.0 / 30;  ///< s between files
 };
 
 struct ParticlesSpec {
   enum class Source { simulation, prescribed, recorded };
   Source source = Source::simulation;
-  double spacing = 0;                       ///< m; must be given
-  double jitter = 0;                        ///< prescribed: random displacement of the lattice, in spacings
-  std::vector<Vec3> positions;              ///< prescribed: explicit particles (m), instead of bodies
-  MotionSpec motion;                        ///< prescribed
-  RecordedSpec recorded;                    ///< recorded
+  double spacing = 0;           ///< m; must be given
+  double jitter = 0;            ///< prescribed: random displacement of the lattice, in spacings
+  std::vector<Vec3> positions;  ///< prescribed: explicit particles (m), instead of bodies
+  MotionSpec motion;            ///< prescribed
+  RecordedSpec recorded;        ///< recorded
 };
 
 struct TrackingSpec {
   bool enabled = true;
   std::string velocity = "curvature";
-  std::string integrator = "rk2";           ///< euler, rk2, rk4
-  int steps_per_frame = 4;                  ///< Particle states between two frames, one tracker step each.
-  double max_motion = 0.25;                 ///< in effective radii
-  double radius = 2.5;                      ///< Effective radius of a particle, in spacings.
-  double threshold = 0;                     ///< 0: the one that puts a flat surface half a spacing outside the particles
-  double edge_length = 0.8;                 ///< Edge length of an extracted mesh, in spacings.
+  std::string integrator = "rk2";  ///< euler, rk2, rk4
+  int steps_per_frame = 4;         ///< Particle states between two frames, one tracker step each.
+  double max_motion = 0.25;        ///< in effective radii
+  double radius = 2.5;             ///< Effective radius of a particle, in spacings.
+  double threshold = 0;            ///< 0: the one that puts a flat surface half a spacing outside the particles
+  double edge_length = 0.8;        ///< Edge length of an extracted mesh, in spacings.
   int fairing_iterations = 10;
-  double fairing_stiffness = 0.3;           ///< 0 to 1
+  double fairing_stiffness = 0.3;  ///< 0 to 1
   bool guard = true;
 };
 
 struct TextureSpec {
-  std::string image = "checker";            ///< checker, marble, or an image file relative to the scene file
-  std::string mapping = "box";              ///< box, planar, spherical
-  double tile_size = 0;                     ///< Edge of one copy of the image on the fluid (m); 0: from the size of the fluid
-  Vec3 axis{0, 1, 0};                       ///< planar: direction of projection; spherical: pole
-  Vec3 rest_center = Vec3::Zero();          ///< Centre of the fluid at rest (m), which the mapping refers to.
-  double rest_size = 0;                     ///< Longest edge of its bounding box (m); 0: centre and size from the fluid at the start
+  std::string image = "checker";    ///< checker, marble, or an image file relative to the scene file
+  std::string mapping = "box";      ///< box, planar, spherical
+  double tile_size = 0;             ///< Edge of one copy of the image on the fluid (m); 0: from the size of the fluid
+  Vec3 axis{0, 1, 0};               ///< planar: direction of projection; spherical: pole
+  Vec3 rest_center = Vec3::Zero();  ///< Centre of the fluid at rest (m), which the mapping refers to.
+  double rest_size = 0;  ///< Longest edge of its bounding box (m); 0: centre and size from the fluid at the start
 };
 
 struct CameraSpec {
-  Vec3 position{0, 0, 0};                   ///< m; all zero: placed to see the whole scene
-  Vec3 look_at{0, 0, 0};                    ///< m
+  Vec3 position{0, 0, 0};  ///< m; all zero: placed to see the whole scene
+  Vec3 look_at{0, 0, 0};   ///< m
   Vec3 up{0, 1, 0};
-  double vertical_fov = 35;                 ///< degrees
+  double vertical_fov = 35;  ///< degrees
 };
 
 struct RenderSpec {
   bool enabled = true;
   CameraSpec camera;
-  int width = 960, height = 540;            ///< pixels
-  int samples = 4;                          ///< rays a pixel
-  std::string style = "textured";           ///< textured, solid (colour of the rest position), normals
-  bool ground = true;                       ///< A ground plane that catches shadows.
-  double ground_height = 0;                 ///< m
+  int width = 960, height = 540;   ///< pixels
+  int samples = 4;                 ///< rays a pixel
+  std::string style = "textured";  ///< textured, solid (colour of the rest position), normals
+  bool ground = true;              ///< A ground plane that catches shadows.
+  double ground_height = 0;        ///< m
   std::array<double, 3> ground_color{0.45, 0.45, 0.45};
-  Vec3 light_direction{-0.4, 1.0, 0.5};     ///< Towards the light.
-  double light_size = 12;                   ///< Angular diameter of the light (degrees): softness of shadows.
+  Vec3 light_direction{-0.4, 1.0, 0.5};  ///< Towards the light.
+  double light_size = 12;                ///< Angular diameter of the light (degrees): softness of shadows.
   double exposure = 1;
 };
 
@@ -109,10 +110,10 @@ struct OutputSpec {
 struct Scene {
   std::string name = "scene";
   std::string description;
-  std::string directory;                    ///< Folder of the scene file; relative file names start here.
+  std::string directory;  ///< Folder of the scene file; relative file names start here.
   std::uint64_t seed = 1;
-  int frames = 150;                         ///< Written after the first one, which is frame 0 at time 0.
-  double frame_rate = 30;                   ///< 1/s
+  int frames = 150;        ///< Written after the first one, which is frame 0 at time 0.
+  double frame_rate = 30;  ///< 1/s
   ParticlesSpec particles;
   sph::SolverSettings solver;
   std::vector<BodySpec> bodies;

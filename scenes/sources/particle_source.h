@@ -27,11 +27,11 @@ struct SourceStatistics {
   std::uint64_t steps = 0;
   std::uint64_t left_domain = 0;
   std::uint64_t wall_crossings = 0;
-  double kinetic_energy = 0;    ///< J
-  double potential_energy = 0;  ///< J
+  double kinetic_energy = 0;                             ///< J
+  double potential_energy = 0;                           ///< J
   double mean_density_error = 0, max_density_error = 0;  ///< |density / rest density - 1|
-  double last_time_step = 0;    ///< s
-  std::string summary;          ///< One line for the log: settings chosen, limits of the step, memory.
+  double last_time_step = 0;                             ///< s
+  std::string summary;  ///< One line for the log: settings chosen, limits of the step, memory.
 };
 
 /// A sequence of particle states; time only goes forward.

@@ -1,0 +1,179 @@
+#include "scenes/scene_checks.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "scenes/io/obj_reader.h"
+
+namespace flowskin::scenes {
+namespace {
+
+using Source = ParticlesSpec::Source;
+
+/// More particles than this are a slip of the spacing: they would need tens of gigabytes.
+constexpr double max_particles = 1e8;
+
+/// Reports problems at the place of a key, or of the object around it where the key is not there.
+class Checker {
+ public:
+  Checker(const JsonNode& root, Problems& problems) : root_(root), problems_(problems) {}
+
+  void require(bool condition, const std::string& path, const std::string& message) {
+    if (!condition) problems_.add(offset(root_, path), path + " " + message);
+  }
+  /// For a key of an entry of a list.
+  void require(bool condition, const std::string& list, std::size_t index, const std::string& key,
+               const std::string& message) {
+    if (condition) return;
+    const std::string path = join_path(fmt::format("{}[{}]", list, index), key);
+    const JsonNode* entries = root_.find(list);
+    const bool there = entries && index < entries->children.size();
+    problems_.add(there ? offset(entries->children[index], key) : root_.offset, path + " " + message);
+  }
+
+ private:
+  static std::size_t offset(const JsonNode& node, std::string path) {
+    while (!path.empty()) {
+      if (const JsonNode* found = find_path(node, path)) return found->offset;
+      path = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.'));
+    }
+    return node.offset;
+  }
+
+  const JsonNode& root_;
+  Problems& problems_;
+};
+
+bool is_ordered(const sph::Box& box) { return (box.min.array() < box.max.array()).all(); }
+
+void check_body(const Scene& scene, std::size_t i, Checker& checker) {
+  const sph::FluidBody& body = scene.bodies[i].body;
+  const double cell = std::pow(scene.particles.spacing, 3);
+  const std::string smaller = "must be smaller than max along every axis";
+  const std::string too_many =
+      fmt::format("makes the body more than {:.0g} particles at particles.spacing {} m; make that larger",
+                  max_particles, write_number(scene.particles.spacing));
+  if (body.shape == sph::FluidBody::Shape::block) {
+    checker.require(is_ordered(body.block), "bodies", i, "min", smaller);
+    checker.require((body.block.max - body.block.min).prod() / cell <= max_particles, "bodies", i, "max", too_many);
+  } else if (body.shape == sph::FluidBody::Shape::ball) {
+    checker.require(4.2 * std::pow(body.radius, 3) / cell <= max_particles, "bodies", i, "radius", too_many);
+  }
+  if (scene.particles.source == Source::prescribed) {
+    const std::string message =
+        "has no meaning with particles.source \"prescribed\": particles.motion gives the velocity";
+    checker.require(body.velocity.isZero(0), "bodies", i, "velocity", message);
+    checker.require(body.angular_velocity.isZero(0), "bodies", i, "angular_velocity", message);
+  }
+}
+
+void check_particles(const Scene& scene, Checker& checker) {
+  const bool has_bodies = !scene.bodies.empty(), has_positions = !scene.particles.positions.empty();
+  if (scene.particles.source == Source::simulation) {
+    checker.require(has_bodies || !scene.emitters.empty(), "bodies",
+                    "is empty and there are no emitters: nothing to simulate; give at least one body or emitter");
+  } else if (scene.particles.source == Source::prescribed) {
+    checker.require(has_bodies || has_positions, "bodies",
+                    "is empty and there are no particles.positions: nothing moves; give one of the two");
+    checker.require(!(has_bodies && has_positions), "particles.positions",
+                    "and bodies are both given; give one of the two");
+    checker.require(!(has_positions && scene.particles.jitter > 0), "particles.jitter",
+                    "displaces the lattice of bodies; it has no meaning with particles.positions");
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(scene, i, checker);
+}
+
+void check_solver(const Scene& scene, Checker& checker) {
+  const sph::SolverSettings& solver = scene.solver;
+  const bool no_domain = (solver.domain.min - solver.domain.max).isZero(0);
+  checker.require(no_domain || is_ordered(solver.domain), "simulation.domain.min",
+                  "must be smaller than simulation.domain.max along every axis");
+  checker.require(solver.speed_of_sound == 0 || solver.speed_of_sound > solver.max_speed, "simulation.speed_of_sound",
+                  "must be larger than simulation.max_speed (ten times as large keeps the density within 1 %)");
+  for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
+    const sph::Emitter& emitter = scene.emitters[i];
+    checker.require(!emitter.direction.isZero(0), "emitters", i, "direction", "is zero; expected a direction");
+    checker.require(emitter.start < emitter.stop, "emitters", i, "stop", "must be later than start");
+  }
+}
+
+void check_pictures(const Scene& scene, Checker& checker) {
+  const CameraSpec& camera = scene.render.camera;
+  checker.require(!scene.texture.axis.isZero(0), "texture.axis", "is zero; expected a direction");
+  checker.require(!scene.render.light_direction.isZero(0), "render.light_direction", "is zero; expected a direction");
+  checker.require(!camera.up.isZero(0), "render.camera.up", "is zero; expected a direction");
+  const Vec3 view = camera.look_at - camera.position;
+  const bool automatic = camera.position.isZero(0) && camera.look_at.isZero(0);
+  checker.require(automatic || !view.isZero(0), "render.camera.look_at", "is the same point as render.camera.position");
+  const double sine = view.cross(camera.up).norm();
+  checker.require(view.isZero(0) || camera.up.isZero(0) || sine > 1e-6 * view.norm() * camera.up.norm(),
+                  "render.camera.up", "is the direction in which the camera looks; expected one across it");
+}
+
+/// `; did you mean "stairs.obj"?` from the files beside a missing one.
+std::string near_file(const std::filesystem::path& file) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(file.parent_path(), error), end; !error && it != end;
+       it.increment(error)) {
+    if (names.size() < 1000) names.push_back(it->path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return did_you_mean(file.filename().string(), names);
+}
+
+void load_mesh(const Scene& scene, const MeshPlacement& placement, const std::string& list, std::size_t i,
+               sph::TriangleMesh& mesh, Checker& checker) {
+  const std::filesystem::path file = absolute_name(scene.directory, placement.file);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) {
+    checker.require(false, list, i, "file",
+                    fmt::format("names {}, which does not exist{}", file.string(), near_file(file)));
+    return;
+  }
+  try {
+    mesh = place(read_obj(file), placement);
+  } catch (const SceneError& problem) {
+    checker.require(false, list, i, "file", std::string("cannot be read: ") + problem.what());
+  }
+}
+
+}  // namespace
+
+std::string absolute_name(const std::string& directory, const std::string& file) {
+  const std::filesystem::path path(file);
+  return (path.is_absolute() ? path : std::filesystem::absolute(std::filesystem::path(directory) / path))
+      .lexically_normal()
+      .string();
+}
+
+void check_consistency(const Scene& scene, const JsonNode& root, Problems& problems) {
+  Checker checker(root, problems);
+  check_particles(scene, checker);
+  check_solver(scene, checker);
+  check_pictures(scene, checker);
+}
+
+void load_files(Scene& scene, const JsonNode& root, Problems& problems) {
+  Checker checker(root, problems);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    BodySpec& body = scene.bodies[i];
+    if (body.body.shape != sph::FluidBody::Shape::mesh) continue;
+    load_mesh(scene, body.mesh, "bodies", i, body.body.mesh, checker);
+  }
+  for (std::size_t i = 0; i < scene.boundaries.size(); ++i) {
+    BoundarySpec& boundary = scene.boundaries[i];
+    load_mesh(scene, boundary.mesh, "boundaries", i, boundary.boundary.mesh, checker);
+  }
+  const std::string& image = scene.texture.image;
+  if (image != "checker" && image != "marble") {
+    const std::string file = absolute_name(scene.directory, image);
+    std::error_code error;
+    std::string near = did_you_mean(image, {"checker", "marble"});
+    if (near.empty()) near = near_file(file);
+    checker.require(std::filesystem::is_regular_file(file, error), "texture.image",
+                    fmt::format("is neither checker nor marble nor an image file: there is no file {}{}", file, near));
+  }
+}
+
+}  // namespace flowskin::scenes

@@ -1,0 +1,65 @@
+#include "scenes/scene_file.h"
+
+#include <fstream>
+#include <iterator>
+
+#include "scenes/scene_checks.h"
+
+namespace flowskin::scenes {
+namespace {
+
+std::string read_text(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) throw SceneError(file.string() + ": there is no such scene file");
+  if (std::filesystem::is_directory(file, error)) {
+    throw SceneError(file.string() + ": this is a folder; expected a scene file (JSON)");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad())
+    throw SceneError(file.string() + ": the file cannot be read; is it yours to read?");
+  return text;
+}
+
+/// File names absolute, so that the written scene means the same wherever it stands.
+void make_names_absolute(Scene& scene) {
+  for (BodySpec& body : scene.bodies) body.mesh.file = absolute_name(scene.directory, body.mesh.file);
+  for (BoundarySpec& boundary : scene.boundaries) {
+    boundary.mesh.file = absolute_name(scene.directory, boundary.mesh.file);
+  }
+  std::string& image = scene.texture.image;
+  if (image != "checker" && image != "marble") image = absolute_name(scene.directory, image);
+  scene.particles.recorded.files = absolute_name(scene.directory, scene.particles.recorded.files);
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& directory,
+                  const SceneVocabulary& vocabulary) {
+  const JsonNode root = parse_json(text, name);
+  Problems problems(name, text);
+  Scene scene;
+  scene.directory = std::filesystem::absolute(directory.empty() ? "." : directory).lexically_normal().string();
+  read_object(root, scene_table(vocabulary), "", scene, problems);
+  problems.throw_if_any();
+  scene.solver.spacing = scene.particles.spacing;
+  check_consistency(scene, root, problems);
+  problems.throw_if_any();
+  load_files(scene, root, problems);
+  problems.throw_if_any();
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& file, const SceneVocabulary& vocabulary) {
+  return parse_scene(read_text(file), file.string(), file.parent_path(), vocabulary);
+}
+
+std::string write_scene(const Scene& scene) {
+  Scene absolute = scene;
+  make_names_absolute(absolute);
+  return write_object(absolute, scene_table({}), 0) + "\n";
+}
+
+std::vector<SceneKey> scene_keys() { return document(scene_table({})); }
+
+}  // namespace flowskin::scenes

@@ -1,0 +1,114 @@
+#include "scenes/scene_objects.h"
+
+namespace flowskin::scenes {
+namespace {
+
+bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
+
+std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+/// Names that are valid inside a section.
+std::vector<std::string> names_in_section(const std::vector<std::string>& paths, const std::string& section) {
+  std::vector<std::string> names;
+  for (const std::string& path : paths) {
+    if (!starts_with(path, section)) continue;
+    const std::string rest = path.substr(section.size());
+    const std::string name = rest.substr(0, rest.find('.'));
+    if (names.empty() || names.back() != name) names.push_back(name);
+  }
+  return names;
+}
+
+/// The nearest valid name of the section; failing that, a key of the same name in another section; failing that, all.
+std::string suggestion(const std::string& name, const std::string& section, const std::vector<std::string>& paths) {
+  const std::vector<std::string> names = names_in_section(paths, section);
+  std::string near = did_you_mean(name, names);
+  if (!near.empty()) return near;
+  for (const std::string& path : paths) {
+    if (edit_distance(last_part(path), name) <= (name.size() > 5 ? 1 : 0)) return "; did you mean \"" + path + "\"?";
+  }
+  return fmt::format("; valid here: {}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+void Problems::throw_if_any() const {
+  if (list_.empty()) return;
+  auto sorted = list_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string message;
+  constexpr std::size_t max_lines = 20;
+  for (std::size_t i = 0; i < std::min(sorted.size(), max_lines); ++i) {
+    const TextPlace place = place_in_text(text_, sorted[i].first);
+    message += fmt::format("{}{}:{}:{}: {}", i > 0 ? "\n" : "", file_, place.line, place.column, sorted[i].second);
+  }
+  if (sorted.size() > max_lines) message += fmt::format("\n... and {} more", sorted.size() - max_lines);
+  throw SceneError(message);
+}
+
+const JsonNode* find_path(const JsonNode& node, const std::string& path) {
+  const JsonNode* found = &node;
+  for (std::size_t start = 0; found && start <= path.size();) {
+    const std::size_t end = std::min(path.find('.', start), path.size());
+    found = found->find(path.substr(start, end - start));
+    start = end + 1;
+  }
+  return found;
+}
+
+void report_unknown_keys(const JsonNode& node, const std::vector<std::string>& paths, const std::string& section,
+                         const std::string& object_path, Problems& problems) {
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const JsonNode& child = node.children[i];
+    const std::string path = section + child.key;
+    const std::string shown = join_path(object_path, path);
+    const bool twice = std::any_of(node.children.begin(), node.children.begin() + static_cast<std::ptrdiff_t>(i),
+                                   [&](const JsonNode& other) { return other.key == child.key; });
+    if (twice) {
+      problems.add(child.offset, shown + " stands here a second time; keep one of them");
+      continue;
+    }
+    if (std::find(paths.begin(), paths.end(), path) != paths.end()) continue;
+    const std::string inner = path + ".";
+    const bool is_section =
+        std::any_of(paths.begin(), paths.end(), [&](const std::string& p) { return starts_with(p, inner); });
+    if (!is_section) {
+      problems.add(child.offset, shown + ": there is no such key" + suggestion(child.key, section, paths));
+    } else if (child.type != JsonNode::Type::object) {
+      problems.add(child.offset, fmt::format("{} is {}; expected an object in braces", shown, describe(child)));
+    } else {
+      report_unknown_keys(child, paths, inner, object_path, problems);
+    }
+  }
+}
+
+std::string type_and_unit(const std::string& type, const std::string& unit) {
+  return unit.empty() ? type : fmt::format("{} ({})", type, unit);
+}
+
+std::string mismatch_message(const std::string& path, const Mismatch& mismatch, const std::string& type,
+                             const std::string& unit) {
+  return fmt::format("{} is {}; expected {}{}", path, mismatch.found, type_and_unit(type, unit), mismatch.hint);
+}
+
+std::string write_sections(const std::vector<WrittenKey>& keys, int indent) {
+  std::string text = "{";
+  for (std::size_t i = 0; i < keys.size();) {
+    text += fmt::format("{}\n{:{}}", i > 0 ? "," : "", "", indent + 2);
+    const std::size_t dot = keys[i].path.find('.');
+    if (dot == std::string::npos) {
+      text += quote_json(keys[i].path) + ": " + keys[i].value;
+      ++i;
+      continue;
+    }
+    const std::string section = keys[i].path.substr(0, dot + 1);
+    std::vector<WrittenKey> inner;
+    for (; i < keys.size() && starts_with(keys[i].path, section); ++i) {
+      inner.push_back({keys[i].path.substr(section.size()), keys[i].value});
+    }
+    text += quote_json(section.substr(0, dot)) + ": " + write_sections(inner, indent + 2);
+  }
+  return text + (keys.empty() ? "}" : fmt::format("\n{:{}}}}", "", indent));
+}
+
+}  // namespace flowskin::scenes

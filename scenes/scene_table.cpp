@@ -1,0 +1,369 @@
+#include "scenes/scene_table.h"
+
+#include "scenes/scene_objects.h"
+#include "scenes/sources/motion.h"
+
+namespace flowskin::scenes {
+namespace {
+
+/// Access to a member through one to three pointers to members: at(&Scene::render, &RenderSpec::width).
+template <class T, class V>
+auto at(V T::*a) {
+  return [a](auto& object) -> auto& { return object.*a; };
+}
+template <class T, class U, class V>
+auto at(U T::*a, V U::*b) {
+  return [ a, b ](auto& object) -> auto& { return object.*a.*b; };
+}
+template <class T, class U, class W, class V>
+auto at(U T::*a, W U::*b, V W::*c) {
+  return [ a, b, c ](auto& object) -> auto& { return object.*a.*b.*c; };
+}
+
+template <class T, class Access, class V>
+Key<T> key(std::string path, Access access, Kind<V> kind, std::string unit, std::string meaning) {
+  Key<T> key;
+  key.path = std::move(path);
+  key.type = kind.type;
+  key.unit = std::move(unit);
+  key.meaning = std::move(meaning);
+  key.read = [access, read = kind.read](const JsonNode& node, T& object, const std::string&, Problems&) {
+    access(object) = read(node);
+  };
+  key.write = [access, write = kind.write](const T& object, int indent) { return write(access(object), indent); };
+  return key;
+}
+
+/// A list of objects with a table of their own.
+template <class T, class Item>
+Key<T> list(const std::string& path, std::vector<Item> T::*items, const Table<Item>& table, std::string meaning) {
+  Key<T> key;
+  key.path = path;
+  key.type = "list of objects";
+  key.meaning = std::move(meaning);
+  key.read = [items, table](const JsonNode& node, T& object, const std::string& own_path, Problems& problems) {
+    if (node.type != JsonNode::Type::list) throw Mismatch{describe(node), ""};
+    (object.*items).clear();
+    for (std::size_t i = 0; i < node.children.size(); ++i) {
+      (object.*items).emplace_back();
+      read_object(node.children[i], table, fmt::format("{}[{}]", own_path, i), (object.*items).back(), problems);
+    }
+  };
+  key.write = [items, table](const T& object, int indent) {
+    std::string text = "[";
+    for (const Item& item : object.*items) {
+      text += fmt::format("{}\n{:{}}{}", &item == &(object.*items).front() ? "" : ",", "", indent + 2,
+                          write_object(item, table, indent + 2));
+    }
+    return text + ((object.*items).empty() ? "]" : fmt::format("\n{:{}}]", "", indent));
+  };
+  for (SceneKey inner : document(table)) {
+    inner.path = path + "[]." + inner.path;
+    key.inner.push_back(std::move(inner));
+  }
+  return key;
+}
+
+/// The keys that place a mesh file, for bodies and boundaries alike.
+template <class T>
+Table<T> placement_keys(MeshPlacement T::*mesh) {
+  return {
+      key<T>("file", at(mesh, &MeshPlacement::file), text(), "", "Mesh (OBJ), relative to the scene file.")
+          .is_required(),
+      key<T>("scale", at(mesh, &MeshPlacement::scale), scale(), "", "Factors along x, y and z, applied first."),
+      key<T>("rotate", at(mesh, &MeshPlacement::rotate), vector(), "degrees",
+             "Rotation about x, then y, then z, applied after the scale."),
+      key<T>("translate", at(mesh, &MeshPlacement::translate), vector(), "m", "Translation, applied last."),
+  };
+}
+
+template <class T>
+void append(Table<T>& table, Table<T> more) {
+  for (Key<T>& key : more) table.push_back(std::move(key));
+}
+
+Table<Scene> general_keys() {
+  using S = Scene;
+  return {
+      key<S>("name", at(&S::name), text(), "", "Name of the scene, for messages and titles."),
+      key<S>("description", at(&S::description), text(), "", "What the scene shows."),
+      key<S>("seed", at(&S::seed), natural(), "", "Seed of all random numbers."),
+      key<S>("frames", at(&S::frames), integer(1, 1000000), "",
+             "Frames after the first one, which is frame 0 at time 0."),
+      key<S>("frame_rate", at(&S::frame_rate), number(above(0, 1e5)), "1/s", "Frames a second."),
+  };
+}
+
+Table<Scene> particle_keys() {
+  using S = Scene;
+  using P = ParticlesSpec;
+  const auto particles = &S::particles;
+  const auto prescribed = [](const S& s) { return s.particles.source == P::Source::prescribed; };
+  const auto recorded = [](const S& s) { return s.particles.source == P::Source::recorded; };
+  const auto moves_by = [prescribed](std::vector<std::string> types) {
+    return [prescribed, types](const S& s) {
+      return prescribed(s) && std::find(types.begin(), types.end(), s.particles.motion.type) != types.end();
+    };
+  };
+  const std::string for_prescribed = "particles.source \"prescribed\"";
+  const std::string for_recorded = "particles.source \"recorded\"";
+  const auto source = choice_of<P::Source>({{"simulation", P::Source::simulation},
+                                            {"prescribed", P::Source::prescribed},
+                                            {"recorded", P::Source::recorded}});
+  return {
+      key<S>("particles.source", at(particles, &P::source), source, "", "Where the particles come from.").selecting(),
+      key<S>("particles.spacing", at(particles, &P::spacing), number(above(0, 1000)), "m",
+             "Distance of neighbouring particles.")
+          .is_required(),
+      key<S>("particles.jitter", at(particles, &P::jitter), number(at_least(0, 0.5)), "spacings",
+             "Random displacement of the lattice of the bodies along each axis.")
+          .only_for(for_prescribed, prescribed),
+      key<S>("particles.positions", at(particles, &P::positions), points(), "m",
+             "Explicit particles, instead of bodies.")
+          .only_for(for_prescribed, prescribed),
+      key<S>("particles.motion.type", at(particles, &P::motion, &MotionSpec::type), choice(motion_names()), "",
+             "Kind of motion.")
+          .selecting()
+          .only_for(for_prescribed, prescribed),
+      key<S>("particles.motion.center", at(particles, &P::motion, &MotionSpec::center), vector(), "m",
+             "Centre of the motion.")
+          .only_for("particles.motion.type \"rotation\" or \"stretch\"", moves_by({"rotation", "stretch"})),
+      key<S>("particles.motion.angular_velocity", at(particles, &P::motion, &MotionSpec::angular_velocity), vector(1e4),
+             "rad/s", "Axis times angular speed.")
+          .only_for("particles.motion.type \"rotation\"", moves_by({"rotation"})),
+      key<S>("particles.motion.rate", at(particles, &P::motion, &MotionSpec::rate), number(at_least(-1e4, 1e4)),
+             "1/s; vortex: m/s", "Rate of the shear or stretch; fastest speed of the vortex.")
+          .only_for("particles.motion.type \"shear\", \"stretch\" or \"vortex\"",
+                    moves_by({"shear", "stretch", "vortex"})),
+      key<S>("particles.motion.velocity", at(particles, &P::motion, &MotionSpec::velocity), vector(1e4), "m/s",
+             "Translation, which carries the whole motion along.")
+          .only_for(for_prescribed, prescribed),
+      key<S>("particles.recorded.files", at(particles, &P::recorded, &RecordedSpec::files), text(), "",
+             "PLY files, as a pattern with * and ? or with %d or %04d, relative to the scene file.")
+          .is_required()
+          .only_for(for_recorded, recorded),
+      key<S>("particles.recorded.frame_interval", at(particles, &P::recorded, &RecordedSpec::frame_interval),
+             number(above(0, 1e5)), "s", "Time between files.")
+          .only_for(for_recorded, recorded),
+  };
+}
+
+Table<Scene> solver_keys() {
+  using S = Scene;
+  using Settings = sph::SolverSettings;
+  const auto solver = &S::solver;
+  const auto kernel = choice_of<sph::KernelType>(
+      {{"wendland_c2", sph::KernelType::wendland_c2}, {"cubic_spline", sph::KernelType::cubic_spline}});
+  Table<S> table = {
+      key<S>("fluid.density", at(solver, &Settings::rest_density), number(above(0, 1e5)), "kg/m^3", "Density at rest."),
+      key<S>("fluid.viscosity", at(solver, &Settings::viscosity), number(at_least(0, 1e4)), "m^2/s",
+             "Kinematic viscosity: water 1e-6, honey 5e-3."),
+      key<S>("simulation.gravity", at(solver, &Settings::gravity), vector(1e4), "m/s^2", "Acceleration of gravity."),
+      key<S>("simulation.kernel", at(solver, &Settings::kernel), kernel, "", "Smoothing kernel."),
+      key<S>("simulation.support_radius", at(solver, &Settings::support_radius), number(at_least(1.2, 4)), "spacings",
+             "Support radius of the kernel; 2 gives about 30 neighbours."),
+      key<S>("simulation.max_speed", at(solver, &Settings::max_speed), number(at_least(0, 1e5)), "m/s",
+             "Fastest flow expected; 0: from heights, gravity and initial velocities."),
+      key<S>("simulation.speed_of_sound", at(solver, &Settings::speed_of_sound), number(at_least(0, 1e5)), "m/s",
+             "Speed of sound; 0: ten times the fastest flow expected."),
+      key<S>("simulation.xsph", at(solver, &Settings::xsph), number(at_least(0, 1)), "",
+             "Share of XSPH smoothing in the velocity that moves particles."),
+      key<S>("simulation.density_diffusion", at(solver, &Settings::density_diffusion), number(at_least(0, 1)), "",
+             "Coefficient of the density diffusion; 0: none."),
+      key<S>("simulation.acoustic_cfl", at(solver, &Settings::acoustic_cfl), number(above(0, 2)), "",
+             "Time step at most this times h / (c + |v|), h the smoothing length."),
+      key<S>("simulation.viscous_cfl", at(solver, &Settings::viscous_cfl), number(above(0, 1)), "",
+             "Time step at most this times h^2 / viscosity."),
+      key<S>("simulation.force_cfl", at(solver, &Settings::force_cfl), number(above(0, 2)), "",
+             "Time step at most this times sqrt(h / |acceleration|)."),
+      key<S>("simulation.max_time_step", at(solver, &Settings::max_time_step), number(above(0, 1e9)), "s",
+             "Largest time step."),
+      key<S>("simulation.skin", at(solver, &Settings::skin), number(at_least(0, 2)), "spacings",
+             "Skin of the neighbour lists; 0: the recommended one."),
+      key<S>("simulation.domain.min", at(solver, &Settings::domain, &sph::Box::min), vector(), "m",
+             "Lower corner of the domain: particles that leave it are removed. Equal corners: no limit."),
+      key<S>("simulation.domain.max", at(solver, &Settings::domain, &sph::Box::max), vector(), "m",
+             "Upper corner of the domain."),
+  };
+  for (Key<S>& key : table) {
+    key = std::move(key).only_for("particles.source \"simulation\"",
+                                  [](const S& s) { return s.particles.source == ParticlesSpec::Source::simulation; });
+  }
+  return table;
+}
+
+Table<Scene> object_keys() {
+  using S = Scene;
+  using Source = ParticlesSpec::Source;
+  return {
+      list<S>("bodies", &S::bodies, body_table(), "Shapes filled with particles at the start.")
+          .only_for("particles.source \"simulation\" or \"prescribed\"",
+                    [](const S& s) { return s.particles.source != Source::recorded; }),
+      list<S>("emitters", &S::emitters, emitter_table(), "Discs that pour fluid.")
+          .only_for("particles.source \"simulation\"",
+                    [](const S& s) { return s.particles.source == Source::simulation; }),
+      list<S>("boundaries", &S::boundaries, boundary_table(), "Walls: open or closed surfaces."),
+  };
+}
+
+Table<Scene> tracking_keys(const SceneVocabulary& vocabulary) {
+  using S = Scene;
+  using T = TrackingSpec;
+  const auto tracking = &S::tracking;
+  return {
+      key<S>("tracking.enabled", at(tracking, &T::enabled), boolean(), "", "Whether a surface is tracked at all."),
+      key<S>("tracking.velocity", at(tracking, &T::velocity),
+             choice(vocabulary.velocity_methods, "name of a velocity method (flowskin methods lists them)"), "",
+             "Method that gives the velocity of the surface."),
+      key<S>("tracking.integrator", at(tracking, &T::integrator), choice({"euler", "rk2", "rk4"}), "",
+             "Time integration of the vertices."),
+      key<S>("tracking.steps_per_frame", at(tracking, &T::steps_per_frame), integer(1, 10000), "",
+             "Particle states a frame, one step of the tracker each."),
+      key<S>("tracking.max_motion", at(tracking, &T::max_motion), number(above(0, 10)), "effective radii",
+             "Farthest that a particle moves in a substep of the tracker."),
+      key<S>("tracking.radius", at(tracking, &T::radius), number(at_least(0.5, 10)), "spacings",
+             "Effective radius of a particle."),
+      key<S>("tracking.threshold", at(tracking, &T::threshold), number(at_least(0, 1000)), "",
+             "Threshold T of the field; 0: the one that puts a flat surface half a spacing outside the particles."),
+      key<S>("tracking.edge_length", at(tracking, &T::edge_length), number(at_least(0.05, 20)), "spacings",
+             "Edge length of an extracted mesh."),
+      key<S>("tracking.fairing_iterations", at(tracking, &T::fairing_iterations), integer(0, 10000), "",
+             "Iterations of fairing a step."),
+      key<S>("tracking.fairing_stiffness", at(tracking, &T::fairing_stiffness), number(at_least(0, 1)), "",
+             "Share of the way to the equilibrium of the springs that an iteration goes."),
+      key<S>("tracking.guard", at(tracking, &T::guard), boolean(), "",
+             "Replace a mesh that no longer fits the particles by a fresh one."),
+  };
+}
+
+Table<Scene> texture_keys() {
+  using S = Scene;
+  using T = TextureSpec;
+  const auto texture = &S::texture;
+  return {
+      key<S>("texture.image", at(texture, &T::image), text(), "",
+             "checker, marble, or an image file relative to the scene file."),
+      key<S>("texture.mapping", at(texture, &T::mapping), choice({"box", "planar", "spherical"}), "",
+             "How texture coordinates follow from rest positions."),
+      key<S>("texture.tile_size", at(texture, &T::tile_size), number(at_least(0, 1e5)), "m",
+             "Edge of one copy of the image on the fluid; 0: from the size of the fluid."),
+      key<S>("texture.axis", at(texture, &T::axis), vector(), "",
+             "Direction of projection (planar), pole (spherical)."),
+  };
+}
+
+Table<Scene> render_keys() {
+  using S = Scene;
+  using R = RenderSpec;
+  using C = CameraSpec;
+  const auto render = &S::render;
+  const auto camera = &R::camera;
+  return {
+      key<S>("render.enabled", at(render, &R::enabled), boolean(), "", "Whether pictures are made."),
+      key<S>("render.camera.position", at(render, camera, &C::position), vector(), "m",
+             "Place of the camera; position and look_at both zero: placed to see the whole scene."),
+      key<S>("render.camera.look_at", at(render, camera, &C::look_at), vector(), "m",
+             "Point in the middle of the picture."),
+      key<S>("render.camera.up", at(render, camera, &C::up), vector(), "", "Direction that is up in the picture."),
+      key<S>("render.camera.vertical_fov", at(render, camera, &C::vertical_fov), number(at_least(1, 170)), "degrees",
+             "Vertical field of view."),
+      key<S>("render.width", at(render, &R::width), integer(16, 16384), "pixels", "Width of the pictures."),
+      key<S>("render.height", at(render, &R::height), integer(16, 16384), "pixels", "Height of the pictures."),
+      key<S>("render.samples", at(render, &R::samples), integer(1, 4096), "", "Rays a pixel."),
+      key<S>("render.style", at(render, &R::style), choice({"textured", "solid", "normals"}), "",
+             "textured, solid (colour of the rest position) or normals."),
+      key<S>("render.ground", at(render, &R::ground), boolean(), "", "Whether a ground plane catches shadows."),
+      key<S>("render.ground_height", at(render, &R::ground_height), number(at_least(-max_coordinate, max_coordinate)),
+             "m", "Height of the ground plane."),
+      key<S>("render.ground_color", at(render, &R::ground_color), color(), "", "Reflectance of the ground."),
+      key<S>("render.light_direction", at(render, &R::light_direction), vector(), "", "Direction towards the light."),
+      key<S>("render.light_size", at(render, &R::light_size), number(at_least(0, 180)), "degrees",
+             "Angular diameter of the light: softness of shadows."),
+      key<S>("render.exposure", at(render, &R::exposure), number(above(0, 1000)), "", "Brightness of the pictures."),
+  };
+}
+
+Table<Scene> output_keys() {
+  using S = Scene;
+  using O = OutputSpec;
+  const auto output = &S::output;
+  return {
+      key<S>("output.obj", at(output, &O::obj), boolean(), "", "Write the surface as OBJ."),
+      key<S>("output.ply", at(output, &O::ply), boolean(), "", "Write the surface as PLY."),
+      key<S>("output.vtp", at(output, &O::vtp), boolean(), "", "Write the surface as VTP."),
+      key<S>("output.particles", at(output, &O::particles), boolean(), "", "Write the particles."),
+      key<S>("output.video", at(output, &O::video), boolean(), "", "Make videos, where ffmpeg is installed."),
+  };
+}
+
+}  // namespace
+
+Table<BodySpec> body_table() {
+  using B = BodySpec;
+  using F = sph::FluidBody;
+  using Shape = F::Shape;
+  const auto body = &B::body;
+  const auto is = [](Shape shape) { return [shape](const B& b) { return b.body.shape == shape; }; };
+  const auto shape = choice_of<Shape>({{"block", Shape::block}, {"ball", Shape::ball}, {"mesh", Shape::mesh}});
+  const auto block = is(Shape::block), ball = is(Shape::ball), mesh = is(Shape::mesh);
+  Table<B> table = {
+      key<B>("shape", at(body, &F::shape), shape, "", "Shape of the body.").is_required().selecting(),
+      key<B>("min", at(body, &F::block, &sph::Box::min), vector(), "m", "Lower corner.")
+          .is_required()
+          .only_for("shape \"block\"", block),
+      key<B>("max", at(body, &F::block, &sph::Box::max), vector(), "m", "Upper corner.")
+          .is_required()
+          .only_for("shape \"block\"", block),
+      key<B>("center", at(body, &F::center), vector(), "m", "Centre.").is_required().only_for("shape \"ball\"", ball),
+      key<B>("radius", at(body, &F::radius), number(above(0, 1e5)), "m", "Radius.")
+          .is_required()
+          .only_for("shape \"ball\"", ball),
+  };
+  for (Key<B>& key : placement_keys(&B::mesh)) {
+    table.push_back(std::move(key).only_for("shape \"mesh\"", mesh));
+  }
+  append<B>(table, {
+                       key<B>("velocity", at(body, &F::velocity), vector(1e4), "m/s", "Initial velocity."),
+                       key<B>("angular_velocity", at(body, &F::angular_velocity), vector(1e4), "rad/s",
+                              "Initial spin about the body's centroid."),
+                   });
+  return table;
+}
+
+Table<sph::Emitter> emitter_table() {
+  using E = sph::Emitter;
+  return {
+      key<E>("center", at(&E::center), vector(), "m", "Centre of the disc.").is_required(),
+      key<E>("direction", at(&E::direction), vector(), "", "Direction of the jet; its length does not matter."),
+      key<E>("radius", at(&E::radius), number(above(0, 1e5)), "m", "Radius of the disc.").is_required(),
+      key<E>("speed", at(&E::speed), number(above(0, 1e4)), "m/s", "Speed of the jet.").is_required(),
+      key<E>("start", at(&E::start), number(at_least(0, 1e30)), "s", "Time at which it begins to pour."),
+      key<E>("stop", at(&E::stop), number(at_least(0, 1e30)), "s", "Time at which it stops."),
+  };
+}
+
+Table<BoundarySpec> boundary_table() {
+  using B = BoundarySpec;
+  Table<B> table = placement_keys(&B::mesh);
+  append<B>(table, {
+                       key<B>("slip", at(&B::boundary, &sph::Boundary::slip), number(at_least(0, 1)), "",
+                              "0: no slip, 1: free slip; between: the share of wall friction taken away."),
+                       key<B>("visible", at(&B::visible), boolean(), "", "Whether it is drawn in the pictures."),
+                       key<B>("color", at(&B::color), color(), "", "Reflectance in the pictures."),
+                   });
+  return table;
+}
+
+Table<Scene> scene_table(const SceneVocabulary& vocabulary) {
+  Table<Scene> table = general_keys();
+  append(table, particle_keys());
+  append(table, solver_keys());
+  append(table, object_keys());
+  append(table, tracking_keys(vocabulary));
+  append(table, texture_keys());
+  append(table, render_keys());
+  append(table, output_keys());
+  return table;
+}
+
+}  // namespace flowskin::scenes

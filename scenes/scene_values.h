@@ -1,0 +1,86 @@
+// The kinds of values that stand in scene files: how each is read, checked, written and named in the documentation.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenes/json_text.h"
+#include "sph/triangle_mesh.h"
+
+namespace flowskin::scenes {
+
+using sph::Vec3;
+
+/// A value is not of the kind expected.
+struct Mismatch {
+  std::string found;
+  std::string hint;           ///< Such as a near name; may be empty.
+  std::size_t offset = npos;  ///< Place of the culprit inside the value; npos: the key itself.
+  static constexpr std::size_t npos = static_cast<std::size_t>(-1);
+};
+
+/// A kind of value with the C++ type V.
+template <class V>
+struct Kind {
+  std::string type;                                        ///< In words, range included.
+  std::function<V(const JsonNode&)> read;                  ///< Throws Mismatch.
+  std::function<std::string(const V&, int indent)> write;  ///< As JSON; further lines start with `indent` spaces.
+};
+
+/// Numbers allowed; an open end does not belong to the range.
+struct Range {
+  double min = 0, max = 0;
+  bool open_min = false;
+};
+inline Range at_least(double min, double max) { return {min, max, false}; }
+inline Range above(double min, double max) { return {min, max, true}; }
+
+/// Coordinates and other signed quantities may be this large: far beyond any scene, small enough for squares and cubes.
+constexpr double max_coordinate = 1e6;
+
+/// A number as the shortest JSON text that reads back exactly, whatever the locale.
+std::string write_number(double value);
+
+Kind<double> number(Range range);
+Kind<int> integer(int min, int max);
+Kind<std::uint64_t> natural();
+Kind<bool> boolean();
+Kind<std::string> text();
+/// One of the names; `type` replaces the list of names in the documentation, where given. No names: any text.
+Kind<std::string> choice(const std::vector<std::string>& names, const std::string& type = "");
+/// Three numbers, each within +-limit.
+Kind<Vec3> vector(double limit = max_coordinate);
+/// Three numbers, or one that stands for all three; none is 0.
+Kind<Vec3> scale();
+/// Red, green, blue.
+Kind<std::array<double, 3>> color();
+/// Any number of points.
+Kind<std::vector<Vec3>> points();
+
+/// One of an enumeration's values by name.
+template <class E>
+Kind<E> choice_of(const std::vector<std::pair<std::string, E>>& values) {
+  std::vector<std::string> names;
+  for (const auto& value : values) names.push_back(value.first);
+  const Kind<std::string> name = choice(names);
+  const auto read = [name, values](const JsonNode& node) {
+    const std::string chosen = name.read(node);
+    for (const auto& value : values) {
+      if (value.first == chosen) return value.second;
+    }
+    throw Mismatch{describe(node), ""};
+  };
+  const auto write = [name, values](const E& e, int indent) {
+    for (const auto& value : values) {
+      if (value.second == e) return name.write(value.first, indent);
+    }
+    return name.write(values.front().first, indent);
+  };
+  return {name.type, read, write};
+}
+
+}  // namespace flowskin::scenes

@@ -1,0 +1,71 @@
+#include "scenes/sources/prescribed_source.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "scenes/scene_file.h"
+#include "scenes/sources/body_particles.h"
+#include "scenes/sources/forward_time.h"
+
+namespace flowskin::scenes {
+
+PrescribedSource::PrescribedSource(const Scene& scene)
+    : motion_(scene.particles.motion), spacing_(scene.particles.spacing) {
+  state_.positions = scene.particles.positions.empty() ? body_particles(scene) : scene.particles.positions;
+  const std::size_t count = state_.positions.size();
+  if (count == 0) throw SceneError(scene.name + ": the bodies hold no particles; make particles.spacing smaller");
+  state_.ids.resize(count);
+  std::iota(state_.ids.begin(), state_.ids.end(), std::uint64_t{0});
+  state_.rest_positions = state_.positions;
+  state_.densities.assign(count, 0.0);
+  state_.velocities.resize(count);
+  if (!motion_.has_closed_form()) grid_positions_ = state_.positions;
+  advance_to(0);
+}
+
+void PrescribedSource::advance_to(double time) {
+  require_forward(state_.time, time);
+  state_.time = time;
+  if (!motion_.has_closed_form()) place_by_integration(time);
+  const Vec3 translation = time * motion_.spec().velocity;
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < state_.positions.size(); ++i) {
+    if (motion_.has_closed_form()) state_.positions[i] = motion_.steady_path(state_.rest_positions[i], time);
+    state_.velocities[i] = motion_.steady_velocity(state_.positions[i]) + motion_.spec().velocity;
+    state_.positions[i] += translation;
+  }
+}
+
+void PrescribedSource::place_by_integration(double time) {
+  const double step = motion_.integration_step();
+  const auto last_step = static_cast<std::uint64_t>(time / step);
+  const double rest = time - static_cast<double>(last_step) * step;
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < grid_positions_.size(); ++i) {
+    for (std::uint64_t k = grid_step_; k < last_step; ++k) grid_positions_[i] = integrated(grid_positions_[i], step);
+    state_.positions[i] = integrated(grid_positions_[i], rest);
+  }
+  grid_step_ = last_step;
+}
+
+Vec3 PrescribedSource::integrated(const Vec3& position, double step) const {
+  const Vec3 k1 = motion_.steady_velocity(position);
+  const Vec3 k2 = motion_.steady_velocity(position + 0.5 * step * k1);
+  const Vec3 k3 = motion_.steady_velocity(position + 0.5 * step * k2);
+  const Vec3 k4 = motion_.steady_velocity(position + step * k3);
+  return position + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+}
+
+SourceStatistics PrescribedSource::statistics() const {
+  SourceStatistics statistics;
+  statistics.steps = grid_step_;
+  statistics.summary =
+      fmt::format("prescribed motion ({}): {} particles, spacing {:.4g} m, paths {}", motion_.spec().type,
+                  state_.positions.size(), spacing_,
+                  motion_.has_closed_form() ? "in closed form"
+                                            : fmt::format("by RK4 with step {:.3g} s", motion_.integration_step()));
+  return statistics;
+}
+
+}  // namespace flowskin::scenes

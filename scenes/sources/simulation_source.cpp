@@ -1,0 +1,72 @@
+#include "scenes/sources/simulation_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scenes/sources/forward_time.h"
+
+namespace flowskin::scenes {
+namespace {
+
+sph::SimulationSetup setup_of(const Scene& scene) {
+  sph::SimulationSetup setup;
+  setup.settings = scene.solver;
+  setup.settings.spacing = scene.particles.spacing;
+  for (const BodySpec& body : scene.bodies) setup.bodies.push_back(body.body);
+  setup.emitters = scene.emitters;
+  for (const BoundarySpec& boundary : scene.boundaries) setup.boundaries.push_back(boundary.boundary);
+  return setup;
+}
+
+}  // namespace
+
+SimulationSource::SimulationSource(const Scene& scene) : solver_(setup_of(scene)) { take_state(); }
+
+void SimulationSource::advance_to(double time) {
+  require_forward(state_.time, time);
+  solver_.advance_to(time);
+  take_state();
+}
+
+void SimulationSource::take_state() {
+  sph::FluidState fluid = solver_.state();
+  state_ = {fluid.time,
+            std::move(fluid.ids),
+            std::move(fluid.positions),
+            std::move(fluid.velocities),
+            std::move(fluid.rest_positions),
+            std::move(fluid.densities)};
+}
+
+SourceStatistics SimulationSource::statistics() const {
+  const sph::SolverSettings& settings = solver_.settings();
+  const sph::SolverStatistics& solver = solver_.statistics();
+  const sph::Energy energy = solver_.energy();
+  SourceStatistics statistics;
+  statistics.steps = solver.steps;
+  statistics.left_domain = solver.left_domain;
+  statistics.wall_crossings = solver.wall_crossings;
+  statistics.kinetic_energy = energy.kinetic;
+  statistics.potential_energy = energy.potential;
+  for (const double density : state_.densities) {
+    const double error = std::abs(density / settings.rest_density - 1);
+    statistics.mean_density_error += error / static_cast<double>(state_.densities.size());
+    statistics.max_density_error = std::max(statistics.max_density_error, error);
+  }
+  statistics.last_time_step = solver.last_step.step;
+  statistics.summary = fmt::format(
+      "simulation: {} fluid and {} wall particles, spacing {:.4g} m, support radius {:.4g} m, speed of sound {:.4g} "
+      "m/s "
+      "(fastest flow expected {:.4g} m/s), viscosity {:.4g} m^2/s; steps limited by acoustic/viscous/force: {}/{}/{}; "
+      "{:.1f} MB",
+      solver_.particle_count(), solver_.boundary_particle_count(), settings.spacing,
+      settings.support_radius * settings.spacing, settings.speed_of_sound, settings.max_speed, settings.viscosity,
+      solver.steps_limited_by_acoustic, solver.steps_limited_by_viscous, solver.steps_limited_by_force,
+      static_cast<double>(solver_.memory_bytes()) / 1e6);
+  return statistics;
+}
+
+}  // namespace flowskin::scenes

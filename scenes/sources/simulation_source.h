@@ -1,0 +1,29 @@
+// Particles of the project's own solver.
+#pragma once
+
+#include "scenes/scene.h"
+#include "scenes/sources/particle_source.h"
+#include "sph/solver.h"
+
+namespace flowskin::scenes {
+
+class SimulationSource : public ParticleSource {
+ public:
+  /// @throws sph::SettingsError where the simulation cannot be set up.
+  explicit SimulationSource(const Scene& scene);
+
+  const ParticleState& state() const override { return state_; }
+  /// @throws sph::BlowUpError
+  void advance_to(double time) override;
+  double spacing() const override { return solver_.settings().spacing; }
+  SourceStatistics statistics() const override;
+  const sph::Solver& solver() const { return solver_; }
+
+ private:
+  void take_state();
+
+  sph::Solver solver_;
+  ParticleState state_;
+};
+
+}  // namespace flowskin::scenes
