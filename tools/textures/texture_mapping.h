@@ -14,18 +14,20 @@ struct RestFrame {
 
 RestFrame rest_frame(const std::vector<Vec3>& rest_positions);
 
-/// Texture coordinates a triangle corner. box: the axis that the triangle faces at rest; spherical: the seam is closed by
-/// continuing u past 1 on the triangles that cross it.
+/// Texture coordinates a triangle corner. box: the axis that the triangle faces at rest; spherical: the seam is closed
+/// by continuing u past 1 on the triangles that cross it.
 std::vector<std::array<Vec2f, 3>> corner_uvs(const tracking::SurfaceMesh& mesh, const scenes::TextureSpec& texture,
                                              const RestFrame& rest);
 /// One pair of coordinates a vertex, for formats that have no more.
-std::vector<Vec2f> vertex_uvs(const tracking::SurfaceMesh& mesh, const scenes::TextureSpec& texture, const RestFrame& rest);
+std::vector<Vec2f> vertex_uvs(const tracking::SurfaceMesh& mesh, const scenes::TextureSpec& texture,
+                              const RestFrame& rest);
 
 /// A colour of the rest position that tells neighbouring material apart, for particles and solid surfaces alike.
 Color rest_color(const Vec3& rest_position, const RestFrame& rest);
 
 /// Normals, colours and texture coordinates added.
-SurfaceFrame dress(const tracking::SurfaceMesh& mesh, double time, const scenes::TextureSpec& texture, const RestFrame& rest);
+SurfaceFrame dress(const tracking::SurfaceMesh& mesh, double time, const scenes::TextureSpec& texture,
+                   const RestFrame& rest);
 ParticleFrame dress(const scenes::ParticleState& state, double spacing, const RestFrame& rest);
 
 }  // namespace flowskin::tools
