@@ -42,7 +42,7 @@ inline Color to_srgb(const Vec3f& linear) {
 /// Film curve: scene light (1 = a white surface in full light) to display light. A rational fit to the ACES reference
 /// transform (K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2016): toe, straight middle, soft shoulder.
 inline float film_curve(float light) {
-  const float x = 0.8f * std::max(light, 0.0f);
+  const float x = 0.6f * std::max(light, 0.0f);
   return std::min(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1.0f);
 }
 

@@ -46,9 +46,9 @@ Lighting make_lighting(const scenes::RenderSpec& settings) {
   Lighting lighting;
   lighting.sun_direction = (settings.light_direction / length).cast<float>();
   lighting.sun_radius = float(settings.light_size) * pi / 360;
-  lighting.sun_irradiance = 0.86f * pi * Vec3f(1.0f, 0.955f, 0.88f);
-  lighting.horizon = Vec3f(0.62f, 0.66f, 0.71f);
-  lighting.zenith = Vec3f(0.20f, 0.28f, 0.42f);
+  lighting.sun_irradiance = 1.05f * pi * Vec3f(1.0f, 0.95f, 0.86f);
+  lighting.horizon = Vec3f(0.46f, 0.50f, 0.56f);
+  lighting.zenith = Vec3f(0.17f, 0.23f, 0.34f);
   lighting.below = Vec3f(0.22f, 0.22f, 0.22f);
   lighting.softbox = Vec3f(0.55f, 0.58f, 0.62f);
   // Opposite the sun and high, so that the side in shade has a sheen as well.
