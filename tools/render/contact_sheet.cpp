@@ -5,7 +5,7 @@
 
 #include "tools/errors.h"
 #include "tools/render/color.h"
-#include "tools/render/stroke_font.h"
+#include "tools/render/labels.h"
 #include "tools/render/video.h"
 
 namespace flowskin::tools {
@@ -91,7 +91,7 @@ Image contact_sheet(const std::vector<std::vector<Image>>& rows, const std::vect
   std::size_t columns = 0;
   for (const auto& row : rows) columns = std::max(columns, row.size());
   const int picture_height = std::max(1, int(std::lround(double(picture_width) * first.height / first.width)));
-  const int text = std::max(7, picture_width / 32), gap = std::max(2, picture_width / 80);
+  const int text = std::max(7, picture_width / 20), gap = std::max(2, picture_width / 80);
   const int left = row_labels.empty() ? gap : 3 * text, top = column_labels.empty() ? gap : 3 * text;
 
   Image sheet;

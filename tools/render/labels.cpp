@@ -1,4 +1,4 @@
-#include "tools/render/stroke_font.h"
+#include "tools/render/labels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -121,8 +121,10 @@ std::string_view glyph(char c) {
 // One glyph a character: the later bytes of a UTF-8 character are no characters.
 bool starts_character(char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }
 
-void append_curve(std::vector<Vec2>& out, const Vec2& from, const Vec2& control, const Vec2& to) {
+// Continues a polyline with a parabola.
+void append_curve(std::vector<Vec2>& out, const Vec2& control, const Vec2& to) {
   constexpr int pieces = 8;
+  const Vec2 from = out.back();
   for (int k = 1; k <= pieces; ++k) {
     const double t = double(k) / pieces;
     out.push_back((1 - t) * (1 - t) * from + 2 * t * (1 - t) * control + t * t * to);
@@ -139,14 +141,13 @@ std::vector<Vec2> flatten(std::string_view stroke) {
   std::vector<Vec2> line;
   if (stroke.front() == 'o') {
     line.push_back((points[n - 1] + points[0]) / 2);
-    for (std::size_t k = 0; k < n; ++k)
-      append_curve(line, line.back(), points[k], (points[k] + points[(k + 1) % n]) / 2);
+    for (std::size_t k = 0; k < n; ++k) append_curve(line, points[k], (points[k] + points[(k + 1) % n]) / 2);
     return line;
   }
   line.push_back(points[0]);
   for (std::size_t k = 1; k + 1 < n; ++k) {
     const Vec2 to = k + 2 < n ? Vec2((points[k] + points[k + 1]) / 2) : points[n - 1];
-    append_curve(line, line.back(), points[k], to);
+    append_curve(line, points[k], to);
   }
   return line;
 }
