@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "tracking/advection/integrator.h"
 #include "tracking/field/metaball_field.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/particles.h"
@@ -12,31 +13,29 @@
 
 namespace flowskin::tracking {
 
-enum class Integrator { euler, rk2, rk4 };
-
 struct TrackerSettings {
-  double spacing = 0;               ///< Distance of neighbouring particles (m); must be given.
-  FieldSettings field;              ///< radius 0: default_field_settings(spacing)
+  double spacing = 0;   ///< Distance of neighbouring particles (m); must be given.
+  FieldSettings field;  ///< radius 0: default_field_settings(spacing)
   std::string velocity = "curvature";
   Integrator integrator = Integrator::rk2;
-  double max_motion = 0.25;         ///< A substep moves no particle further than this share of the effective radius.
-  double edge_length = 0;           ///< Edge length of an extracted mesh (m); 0: 0.8 spacings.
-  int fairing_iterations = 10;      ///< [FMM13, 3.4]
-  double fairing_stiffness = 0.3;   ///< Share of the way to the spring equilibrium an iteration goes, 0 to 1.
-  bool guard = true;                ///< Replace a mesh that no longer fits the field by a fresh extraction.
+  double max_motion = 0.25;        ///< A substep moves no particle further than this share of the effective radius.
+  double edge_length = 0;          ///< Edge length of an extracted mesh (m); 0: 0.8 spacings.
+  int fairing_iterations = 10;     ///< [FMM13, 3.4]
+  double fairing_stiffness = 0.3;  ///< Share of the way to the spring equilibrium an iteration goes, 0 to 1.
+  bool guard = true;               ///< Replace a mesh that no longer fits the field by a fresh extraction.
 };
 
 /// What happened in the last call of Tracker::advance, and how well the mesh fits now.
 struct TrackerReport {
   int substeps = 0;
-  bool reextracted = false;         ///< The guard replaced the mesh.
-  std::string reason;               ///< Why, in words; empty where it did not.
-  int components = 0;               ///< Of the mesh.
-  int expected_components = 0;      ///< Of a fresh extraction.
-  double volume = 0;                ///< m^3
-  double expected_volume = 0;       ///< Of a fresh extraction (m^3).
-  double area = 0;                  ///< m^2
-  double max_distance = 0;          ///< Largest |f| / |grad f| at the vertices (m).
+  bool reextracted = false;     ///< The guard replaced the mesh.
+  std::string reason;           ///< Why, in words; empty where it did not.
+  int components = 0;           ///< Of the mesh.
+  int expected_components = 0;  ///< Of a fresh extraction.
+  double volume = 0;            ///< m^3
+  double expected_volume = 0;   ///< Of a fresh extraction (m^3).
+  double area = 0;              ///< m^2
+  double max_distance = 0;      ///< Largest |f| / |grad f| at the vertices (m).
   double seconds_velocity = 0, seconds_projection = 0, seconds_fairing = 0, seconds_guard = 0;
 };
 

@@ -18,7 +18,7 @@ struct SurfaceMesh {
   std::vector<Vec3> velocities;      ///< m/s, of the last advection
   std::vector<std::uint64_t> ids;    ///< Persistent; never used again for another vertex.
   std::vector<Triangle> triangles;
-  std::uint64_t next_id = 0;         ///< The id of the next vertex to be born.
+  std::uint64_t next_id = 0;  ///< The id of the next vertex to be born.
 };
 
 }  // namespace flowskin::tracking

@@ -1,0 +1,26 @@
+// Moves vertices with a surface velocity.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "tracking/field/metaball_field.h"
+#include "tracking/mesh/surface_mesh.h"
+#include "tracking/velocity/velocity_method.h"
+
+namespace flowskin::tracking {
+
+enum class Integrator { euler, rk2, rk4 };
+
+/// The field at a time (s), built anew.
+using FieldAt = std::function<MetaballField(double)>;
+
+/// One step from `time` to `time + step` by Euler's method, the midpoint rule or the classical Runge-Kutta method.
+/// @param field_now the field at `time`
+/// @param first_velocity where not empty, the method's velocity at the given positions and time, known already (m/s)
+/// @param positions the vertices (m), one a vertex of `mesh`; moved.
+void advect_step(const VelocityMethod& method, const SurfaceMesh& mesh, Integrator integrator,
+                 const MetaballField& field_now, const FieldAt& field_at, double time, double step,
+                 const std::vector<Vec3>& first_velocity, std::vector<Vec3>& positions);
+
+}  // namespace flowskin::tracking

@@ -1,0 +1,45 @@
+// Puts vertices onto the surface [FMM13, Eq. 12].
+#pragma once
+
+#include <vector>
+
+#include "tracking/field/metaball_field.h"
+
+namespace flowskin::tracking {
+
+struct ProjectionSettings {
+  double tolerance = 0;     ///< A point is on the surface where |f| / |grad f| is at most this (m).
+  double max_step = 0;      ///< Longest step of one iteration (m).
+  double max_distance = 0;  ///< A point that would have to go farther than this is given up (m).
+  int max_iterations = 30;
+};
+
+/// tolerance 1e-7, max_step 0.25, max_distance 1 effective radii.
+ProjectionSettings default_projection(const FieldSettings& field);
+
+/// Where a projection ended.
+struct SurfaceDistance {
+  Vec3 normal = Vec3::Zero();  ///< -grad f / |grad f| at the point, outward; zero where no particle is near.
+  double distance = 0;         ///< |f| / |grad f| (m); infinite where no particle is near.
+};
+
+/// |f| / |grad f| and the normal at a point.
+SurfaceDistance surface_distance(const MetaballField& field, const Vec3& x);
+
+/// Newton's iteration x - f grad f / |grad f|^2 with limited steps, halved while they do not bring |f| down. Where it
+/// fails (silent field, no progress, too far) x is left at its start.
+/// @return false where it failed; `point` describes the place where x is in the end.
+bool project_point(const MetaballField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point);
+
+/// What became of all vertices.
+struct Projection {
+  std::vector<Vec3> normals;  ///< Outward, one a vertex.
+  std::vector<int> failed;    ///< Vertices that are not on the surface, ascending.
+  double max_distance = 0;    ///< Largest |f| / |grad f| (m), the failed ones included.
+};
+
+/// project_point for every vertex.
+Projection project_to_surface(const MetaballField& field, const ProjectionSettings& settings,
+                              std::vector<Vec3>& positions);
+
+}  // namespace flowskin::tracking

@@ -1,0 +1,178 @@
+#include "tracking/extraction/marching_cubes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tracking/extraction/marching_cubes_tables.h"
+
+namespace flowskin::tracking {
+namespace {
+
+constexpr int kSide = SparseGrid::kSide;
+constexpr double kNodeClearance = 1e-3;
+constexpr double kRootTolerance = 1e-6;
+constexpr int kRootIterations = 60;
+
+// What one block contributes. An edge belongs to the node at its lower end.
+struct BlockSurface {
+  std::array<int, 8> neighbors{};   // the blocks at offsets 0 and 1 along x (bit 0), y (bit 1), z (bit 2); -1: none
+  std::vector<int> vertex_of_edge;  // 3 * node + axis -> vertex, counted within the block; empty: no vertices at all
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  int first_vertex = 0;
+};
+
+// Root on the segment from a to b, as a share of it; fa and fb have different signs (zero counts as outside).
+double root_on_edge(const Vec3& a, const Vec3& b, double fa, double fb, const ScalarFunction& field) {
+  double low = 0, high = 1;
+  if (!field) return fa / (fa - fb);
+  double t = fa / (fa - fb);
+  int last_side = 0;
+  for (int iteration = 0; iteration < kRootIterations && high - low > kRootTolerance; ++iteration) {
+    const double previous = t;
+    const double f = field(a + t * (b - a));
+    if (f == 0) return t;
+    const int side = (f > 0) == (fa > 0) ? -1 : 1;
+    if (side < 0) {
+      low = t, fa = f;
+      if (last_side == side) fb /= 2;
+    } else {
+      high = t, fb = f;
+      if (last_side == side) fa /= 2;
+    }
+    last_side = side;
+    t = low + (high - low) * fa / (fa - fb);
+    if (std::abs(t - previous) < kRootTolerance) break;
+  }
+  return t;
+}
+
+class Marcher {
+ public:
+  Marcher(const SparseGrid& grid, const ScalarFunction& field) : grid_(grid), field_(field) {
+    surfaces_.resize(grid.blocks().size());
+  }
+
+  SurfaceGeometry run() {
+    const int count = static_cast<int>(surfaces_.size());
+#pragma omp parallel for schedule(dynamic, 4)
+    for (int b = 0; b < count; ++b) {
+      find_neighbors(b);
+      place_vertices(b);
+    }
+    int vertices = 0;
+    for (BlockSurface& surface : surfaces_) {
+      surface.first_vertex = vertices;
+      vertices += static_cast<int>(surface.positions.size());
+    }
+#pragma omp parallel for schedule(dynamic, 4)
+    for (int b = 0; b < count; ++b) place_triangles(b);
+
+    SurfaceGeometry result;
+    for (const BlockSurface& surface : surfaces_) {
+      result.positions.insert(result.positions.end(), surface.positions.begin(), surface.positions.end());
+      result.triangles.insert(result.triangles.end(), surface.triangles.begin(), surface.triangles.end());
+    }
+    return result;
+  }
+
+ private:
+  void find_neighbors(int b) {
+    const SparseGrid::Index& place = grid_.blocks()[b].place;
+    for (int offset = 0; offset < 8; ++offset) {
+      surfaces_[b].neighbors[offset] =
+          grid_.find({place[0] + (offset & 1), place[1] + (offset >> 1 & 1), place[2] + (offset >> 2 & 1)});
+    }
+  }
+
+  // The block that holds node (i, j, k) relative to block b, each 0 to kSide, and the node's number in it.
+  int locate(int b, int i, int j, int k, int& node) const {
+    const int offset = (i == kSide ? 1 : 0) | (j == kSide ? 2 : 0) | (k == kSide ? 4 : 0);
+    node = SparseGrid::node_in_block(i % kSide, j % kSide, k % kSide);
+    return surfaces_[b].neighbors[offset];
+  }
+
+  double value(int b, int i, int j, int k) const {
+    int node = 0;
+    const int block = locate(b, i, j, k, node);
+    return block < 0 ? grid_.outside() : grid_.blocks()[block].values[node];
+  }
+
+  void place_vertices(int b) {
+    BlockSurface& surface = surfaces_[b];
+    for (int i = 0; i < kSide; ++i) {
+      for (int j = 0; j < kSide; ++j) {
+        for (int k = 0; k < kSide; ++k) {
+          const int node = SparseGrid::node_in_block(i, j, k);
+          const double f = grid_.blocks()[b].values[node];
+          for (int axis = 0; axis < 3; ++axis) {
+            const double g = value(b, i + (axis == 0), j + (axis == 1), k + (axis == 2));
+            if ((f > 0) != (g > 0)) place_vertex(surface, b, {i, j, k}, axis, f, g);
+          }
+        }
+      }
+    }
+  }
+
+  void place_vertex(BlockSurface& surface, int b, const SparseGrid::Index& local, int axis, double f, double g) const {
+    const SparseGrid::Index& place = grid_.blocks()[b].place;
+    SparseGrid::Index index{};
+    for (int a = 0; a < 3; ++a) index[a] = kSide * place[a] + local[a];
+    const Vec3 low = grid_.position(index);
+    ++index[axis];
+    const Vec3 high = grid_.position(index);
+    const double root = root_on_edge(low, high, f, g, field_);
+    // The clamp also catches a root that rounding made NaN.
+    const double t = root > kNodeClearance ? std::min(root, 1 - kNodeClearance) : kNodeClearance;
+    if (surface.vertex_of_edge.empty()) surface.vertex_of_edge.assign(3 * SparseGrid::kNodes, -1);
+    const int node = SparseGrid::node_in_block(local[0], local[1], local[2]);
+    surface.vertex_of_edge[3 * node + axis] = static_cast<int>(surface.positions.size());
+    surface.positions.push_back(low + t * (high - low));
+  }
+
+  void place_triangles(int b) {
+    for (int i = 0; i < kSide; ++i) {
+      for (int j = 0; j < kSide; ++j) {
+        // Corners at the lower and upper end of z share most values from one cell to the next.
+        int low_bits = layer_bits(b, i, j, 0);
+        for (int k = 0; k < kSide; ++k) {
+          const int high_bits = layer_bits(b, i, j, k + 1);
+          const int pattern = low_bits | high_bits << 4;
+          if (pattern != 0 && pattern != 255) place_cell(b, {i, j, k}, pattern);
+          low_bits = high_bits;
+        }
+      }
+    }
+  }
+
+  int layer_bits(int b, int i, int j, int k) const {
+    return (value(b, i, j, k) > 0 ? 1 : 0) | (value(b, i + 1, j, k) > 0 ? 2 : 0) | (value(b, i, j + 1, k) > 0 ? 4 : 0) |
+           (value(b, i + 1, j + 1, k) > 0 ? 8 : 0);
+  }
+
+  void place_cell(int b, const SparseGrid::Index& cell, int pattern) {
+    const CellTables& tables = cell_tables();
+    for (const auto& edges : tables.triangles[pattern]) {
+      Triangle triangle{};
+      for (int corner = 0; corner < 3; ++corner) {
+        const int start = tables.edge_corners[edges[corner]][0];
+        int node = 0;
+        const int block =
+            locate(b, cell[0] + (start & 1), cell[1] + (start >> 1 & 1), cell[2] + (start >> 2 & 1), node);
+        const BlockSurface& owner = surfaces_[block];
+        triangle[corner] = owner.first_vertex + owner.vertex_of_edge[3 * node + edges[corner] / 4];
+      }
+      surfaces_[b].triangles.push_back(triangle);
+    }
+  }
+
+  const SparseGrid& grid_;
+  const ScalarFunction& field_;
+  std::vector<BlockSurface> surfaces_;
+};
+
+}  // namespace
+
+SurfaceGeometry march(const SparseGrid& grid, const ScalarFunction& field) { return Marcher(grid, field).run(); }
+
+}  // namespace flowskin::tracking

@@ -1,0 +1,87 @@
+#include "tracking/fairing/relaxation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "tracking/mesh/mesh_measures.h"
+
+namespace flowskin::tracking {
+namespace {
+
+constexpr double kShare = 0.5;
+constexpr double kLargestMove = 0.3;  // of the shortest edge at the vertex
+constexpr double kInvertedCosine = 0.2;
+constexpr int kTakeBackRounds = 8;
+
+// Where a vertex would go, before projection.
+Vec3 relaxed_position(int vertex, const MeshTopology& topology, const std::vector<Vec3>& positions,
+                      const Vec3& normal) {
+  const Vec3& x = positions[vertex];
+  Vec3 mean = Vec3::Zero();
+  double shortest = std::numeric_limits<double>::max();
+  const auto ring = topology.ring(vertex);
+  for (const auto& [other, edge] : ring) {
+    mean += positions[other] - x;
+    shortest = std::min(shortest, (positions[other] - x).squaredNorm());
+  }
+  if (ring.empty()) return x;
+  Vec3 move = kShare / static_cast<double>(ring.size()) * mean;
+  move -= normal * normal.dot(move);
+  const double limit = kLargestMove * std::sqrt(shortest), length = move.norm();
+  return length > limit ? Vec3(x + limit / length * move) : Vec3(x + move);
+}
+
+// Takes back the moves around triangles that were upright before and are not now.
+void take_back(const std::vector<Triangle>& triangles, const std::vector<char>& inverted_before,
+               const std::vector<Vec3>& old_positions, const std::vector<Vec3>& old_normals,
+               std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
+  for (int round = 0; round < kTakeBackRounds; ++round) {
+    bool any = false;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      if (inverted_before[t] || !is_inverted(triangles[t], positions, normals)) continue;
+      for (int vertex : triangles[t]) {
+        any = any || positions[vertex] != old_positions[vertex];
+        positions[vertex] = old_positions[vertex];
+        normals[vertex] = old_normals[vertex];
+      }
+    }
+    if (!any) return;
+  }
+}
+
+}  // namespace
+
+bool is_inverted(const Triangle& triangle, const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) {
+  const Vec3 area = doubled_area_vector(positions, triangle);
+  const Vec3 outward = normals[triangle[0]] + normals[triangle[1]] + normals[triangle[2]];
+  return !(area.dot(outward) > kInvertedCosine * area.norm() * outward.norm());
+}
+
+void relax(const MetaballField& field, const ProjectionSettings& projection, const MeshTopology& topology,
+           const std::vector<Triangle>& triangles, int iterations, const std::vector<int>& vertices,
+           std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
+  std::vector<int> moving = vertices;
+  if (moving.empty()) {
+    moving.resize(positions.size());
+    std::iota(moving.begin(), moving.end(), 0);
+  }
+  std::vector<char> inverted(triangles.size());
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    const std::vector<Vec3> old_positions = positions, old_normals = normals;
+    for (std::size_t t = 0; t < triangles.size(); ++t) inverted[t] = is_inverted(triangles[t], positions, normals);
+#pragma omp parallel for schedule(dynamic, 256)
+    for (int i = 0; i < static_cast<int>(moving.size()); ++i) {
+      const int vertex = moving[i];
+      Vec3 x = relaxed_position(vertex, topology, old_positions, old_normals[vertex]);
+      SurfaceDistance point;
+      if (!project_point(field, projection, x, point)) continue;
+      positions[vertex] = x;
+      normals[vertex] = point.normal;
+    }
+    take_back(triangles, inverted, old_positions, old_normals, positions, normals);
+  }
+}
+
+}  // namespace flowskin::tracking

@@ -1,0 +1,23 @@
+// Evens out a mesh along its surface, without memory of its first shape.
+#pragma once
+
+#include <vector>
+
+#include "tracking/advection/projection.h"
+#include "tracking/mesh/topology.h"
+
+namespace flowskin::tracking {
+
+/// Moves vertices half of the way towards the mean of their one-ring within the tangent plane, then projects them onto
+/// the surface. All vertices move at once (Jacobi), each at most 0.3 of its shortest edge. Moves that would turn a
+/// triangle inside out are taken back, and a vertex that does not reach the surface stays where it was.
+/// @param normals outward unit normals at the vertices, brought up to date.
+/// @param vertices the ones that may move; empty: all.
+void relax(const MetaballField& field, const ProjectionSettings& projection, const MeshTopology& topology,
+           const std::vector<Triangle>& triangles, int iterations, const std::vector<int>& vertices,
+           std::vector<Vec3>& positions, std::vector<Vec3>& normals);
+
+/// True where the triangle does not look the way the normals at its corners do (more than 78 degrees off, or no area).
+bool is_inverted(const Triangle& triangle, const std::vector<Vec3>& positions, const std::vector<Vec3>& normals);
+
+}  // namespace flowskin::tracking

@@ -1,0 +1,163 @@
+#include "tracking/mesh/editable_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace flowskin::tracking {
+namespace {
+
+constexpr double kLargestTurn = 0.5;     // cosine of 60 degrees
+constexpr double kSliver = 0.15;         // shape() of a triangle not to be made
+constexpr double kFlat = 0.8;            // cosine of the largest angle between triangles whose edge may be flipped
+constexpr double kDelaunaySlack = 1e-6;  // rad
+
+bool contains(const Triangle& triangle, int vertex) {
+  return std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
+}
+
+// 1 for an equilateral triangle, 0 for a degenerate one.
+double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double squares = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
+  return squares > 0 ? 2 * std::sqrt(3.0) * (b - a).cross(c - a).norm() / squares : 0;
+}
+
+Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = (b - a).cross(c - a);
+  const double length = normal.norm();
+  return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
+}
+
+double angle_at(const Vec3& x, const Vec3& a, const Vec3& b) {
+  return std::atan2((a - x).cross(b - x).norm(), (a - x).dot(b - x));
+}
+
+}  // namespace
+
+EditableMesh::EditableMesh(std::vector<Vec3>& positions, std::vector<Triangle>& triangles)
+    : positions_(positions), triangles_(triangles), stars_(positions.size()) {
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+    for (int vertex : triangles[t]) stars_[vertex].push_back(t);
+  }
+}
+
+std::vector<int> EditableMesh::ring(int vertex) const {
+  std::vector<int> neighbors;
+  for (int t : stars_[vertex]) {
+    for (int other : triangles_[t]) {
+      if (other != vertex) neighbors.push_back(other);
+    }
+  }
+  std::sort(neighbors.begin(), neighbors.end());
+  neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
+  return neighbors;
+}
+
+bool EditableMesh::wings(int a, int b, std::array<int, 2>& triangles, std::array<int, 2>& opposite) const {
+  int count = 0;
+  for (int t : stars_[a]) {
+    if (!contains(triangles_[t], b)) continue;
+    if (count == 2) return false;
+    triangles[count] = t;
+    for (int vertex : triangles_[t]) {
+      if (vertex != a && vertex != b) opposite[count] = vertex;
+    }
+    ++count;
+  }
+  return count == 2 && opposite[0] != opposite[1];
+}
+
+bool EditableMesh::collapse_keeps_shape(int kept, int removed, double longest_edge) const {
+  for (int t : stars_[removed]) {
+    if (contains(triangles_[t], kept)) continue;
+    std::array<Vec3, 3> before, after;
+    for (int corner = 0; corner < 3; ++corner) {
+      const int vertex = triangles_[t][corner];
+      before[corner] = positions_[vertex];
+      after[corner] = vertex == removed ? positions_[kept] : before[corner];
+      if (vertex != removed && (positions_[vertex] - positions_[kept]).norm() > longest_edge) return false;
+    }
+    const double shape_after = shape(after[0], after[1], after[2]);
+    if (shape_after < std::min(kSliver, shape(before[0], before[1], before[2])) || shape_after <= 0) return false;
+    const Vec3 normal_before = unit_normal(before[0], before[1], before[2]);
+    if (unit_normal(after[0], after[1], after[2]).dot(normal_before) < kLargestTurn) return false;
+  }
+  return true;
+}
+
+bool EditableMesh::collapse(int kept, int removed, double longest_edge) {
+  if (kept == removed || !alive(kept) || !alive(removed)) return false;
+  std::array<int, 2> triangles{}, opposite{};
+  if (!wings(kept, removed, triangles, opposite)) return false;
+  const std::vector<int> kept_ring = ring(kept), removed_ring = ring(removed);
+  std::vector<int> common;
+  std::set_intersection(kept_ring.begin(), kept_ring.end(), removed_ring.begin(), removed_ring.end(),
+                        std::back_inserter(common));
+  // Two common neighbours, and more than a tetrahedron: then the links meet in the link of the edge only.
+  if (common.size() != 2 || ring(opposite[0]).size() <= 3 || ring(opposite[1]).size() <= 3) return false;
+  if (!collapse_keeps_shape(kept, removed, longest_edge)) return false;
+
+  for (int t : triangles) {
+    for (int vertex : triangles_[t]) std::erase(stars_[vertex], t);
+    triangles_[t] = {-1, -1, -1};
+  }
+  for (int t : stars_[removed]) {
+    std::replace(triangles_[t].begin(), triangles_[t].end(), removed, kept);
+    stars_[kept].push_back(t);
+  }
+  stars_[removed].clear();
+  return true;
+}
+
+bool EditableMesh::wants_flip(int a, int b) const {
+  std::array<int, 2> triangles{}, opposite{};
+  if (!alive(a) || !alive(b) || !wings(a, b, triangles, opposite)) return false;
+  return angle_at(positions_[opposite[0]], positions_[a], positions_[b]) +
+             angle_at(positions_[opposite[1]], positions_[a], positions_[b]) >
+         M_PI + kDelaunaySlack;
+}
+
+bool EditableMesh::flip(int a, int b) {
+  std::array<int, 2> triangles{}, opposite{};
+  if (!alive(a) || !alive(b) || !wings(a, b, triangles, opposite)) return false;
+  if (stars_[a].size() <= 3 || stars_[b].size() <= 3) return false;
+  for (int t : stars_[opposite[0]]) {
+    if (contains(triangles_[t], opposite[1])) return false;
+  }
+  // In triangle 0 the edge runs from `from` to `to`; triangle 1 passes it the other way.
+  const Triangle& first = triangles_[triangles[0]];
+  const auto place = std::find(first.begin(), first.end(), a) - first.begin();
+  const bool forward = first[(place + 1) % 3] == b;
+  const int from = forward ? a : b, to = forward ? b : a;
+  const Vec3 &xf = positions_[from], &xt = positions_[to];
+  const Vec3 &x0 = positions_[opposite[0]], &x1 = positions_[opposite[1]];
+  const Vec3 old0 = unit_normal(xf, xt, x0), old1 = unit_normal(xt, xf, x1);
+  const Vec3 new0 = unit_normal(x0, xf, x1), new1 = unit_normal(x1, xt, x0);
+  const Vec3 mean = (old0 + old1).normalized();
+  if (!(old0.dot(old1) > kFlat && new0.dot(mean) > kFlat && new1.dot(mean) > kFlat)) return false;
+
+  triangles_[triangles[0]] = {opposite[0], from, opposite[1]};
+  triangles_[triangles[1]] = {opposite[1], to, opposite[0]};
+  std::erase(stars_[to], triangles[0]);
+  std::erase(stars_[from], triangles[1]);
+  stars_[opposite[0]].push_back(triangles[1]);
+  stars_[opposite[1]].push_back(triangles[0]);
+  return true;
+}
+
+void EditableMesh::compact() {
+  std::vector<int> number(positions_.size(), -1);
+  int count = 0;
+  for (int vertex = 0; vertex < static_cast<int>(positions_.size()); ++vertex) {
+    if (!alive(vertex)) continue;
+    positions_[count] = positions_[vertex];
+    number[vertex] = count++;
+  }
+  positions_.resize(count);
+  std::erase_if(triangles_, [](const Triangle& triangle) { return triangle[0] < 0; });
+  for (Triangle& triangle : triangles_) {
+    for (int& vertex : triangle) vertex = number[vertex];
+  }
+}
+
+}  // namespace flowskin::tracking

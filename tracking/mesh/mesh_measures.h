@@ -1,0 +1,47 @@
+// Volume, area, components, triangle quality.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "tracking/mesh/topology.h"
+
+namespace flowskin::tracking {
+
+/// Volume enclosed by a closed mesh (m^3); cavities count negative.
+double mesh_volume(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+
+/// Area (m^2).
+double mesh_area(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+
+/// The parts of a mesh that hang together, numbered by their lowest vertex.
+struct MeshComponents {
+  int count = 0;
+  std::vector<int> of_vertex;   ///< Component of each vertex; -1 where no triangle uses it.
+  std::vector<double> volumes;  ///< Of each component (m^3); negative: a cavity, or turned inside out.
+  std::vector<double> areas;    ///< Of each component (m^2).
+};
+MeshComponents mesh_components(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+
+/// Vertices - edges + triangles: 2 for each ball, 0 for each torus.
+int euler_characteristic(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+
+/// Shape of the triangles.
+struct MeshQuality {
+  double shortest_edge = 0, mean_edge = 0, longest_edge = 0;  ///< m
+  double smallest_angle = 0;                                  ///< Of all triangles (rad).
+  double mean_smallest_angle = 0;  ///< Mean over the triangles of the smallest angle of each (rad); 60 degrees at best.
+};
+/// All zero for an empty mesh.
+MeshQuality mesh_quality(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+
+/// Twice the area vector of a triangle (m^2), along the outward normal.
+inline Vec3 doubled_area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
+  const Vec3& a = positions[triangle[0]];
+  return (positions[triangle[1]] - a).cross(positions[triangle[2]] - a);
+}
+
+/// Unit outward normals, weighted by area; zero where a vertex has no triangle with an area.
+std::vector<Vec3> vertex_normals(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+
+}  // namespace flowskin::tracking

@@ -1,0 +1,77 @@
+#include "tracking/mesh/topology.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace flowskin::tracking {
+namespace {
+
+void build_stars(int vertex_count, const std::vector<Triangle>& triangles, MeshTopology& topology) {
+  topology.triangle_begin.assign(vertex_count + 1, 0);
+  for (const Triangle& triangle : triangles) {
+    for (int vertex : triangle) ++topology.triangle_begin[vertex + 1];
+  }
+  std::partial_sum(topology.triangle_begin.begin(), topology.triangle_begin.end(), topology.triangle_begin.begin());
+  topology.triangles_of.resize(3 * triangles.size());
+  std::vector<int> cursor(topology.triangle_begin.begin(), topology.triangle_begin.end() - 1);
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+    for (int vertex : triangles[t]) topology.triangles_of[cursor[vertex]++] = t;
+  }
+}
+
+// The edges that start at their lower vertex, in lexicographic order.
+void build_edges(int vertex_count, const std::vector<Triangle>& triangles, MeshTopology& topology) {
+  std::vector<std::array<int, 2>> ends;  // (higher vertex, triangle) of the edges of one lower vertex
+  for (int vertex = 0; vertex < vertex_count; ++vertex) {
+    ends.clear();
+    for (int t : topology.star(vertex)) {
+      for (int other : triangles[t]) {
+        if (other > vertex) ends.push_back({other, t});
+      }
+    }
+    std::sort(ends.begin(), ends.end());
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (i == 0 || ends[i][0] != ends[i - 1][0]) {
+        topology.edges.push_back({vertex, ends[i][0]});
+        topology.edge_triangles.push_back({ends[i][1], -1});
+      } else if (topology.edge_triangles.back()[1] < 0) {
+        topology.edge_triangles.back()[1] = ends[i][1];
+      }
+    }
+  }
+}
+
+}  // namespace
+
+MeshTopology build_topology(int vertex_count, const std::vector<Triangle>& triangles) {
+  MeshTopology topology;
+  build_stars(vertex_count, triangles, topology);
+  build_edges(vertex_count, triangles, topology);
+
+  topology.neighbor_begin.assign(vertex_count + 1, 0);
+  for (const auto& [low, high] : topology.edges) {
+    ++topology.neighbor_begin[low + 1];
+    ++topology.neighbor_begin[high + 1];
+  }
+  std::partial_sum(topology.neighbor_begin.begin(), topology.neighbor_begin.end(), topology.neighbor_begin.begin());
+  topology.neighbors.resize(2 * topology.edges.size());
+  std::vector<int> cursor(topology.neighbor_begin.begin(), topology.neighbor_begin.end() - 1);
+  // Lexicographic order of the edges makes each ring ascending: first the lower neighbours, then the higher ones.
+  for (int e = 0; e < static_cast<int>(topology.edges.size()); ++e) {
+    topology.neighbors[cursor[topology.edges[e][1]]++] = {topology.edges[e][0], e};
+  }
+  for (int e = 0; e < static_cast<int>(topology.edges.size()); ++e) {
+    topology.neighbors[cursor[topology.edges[e][0]]++] = {topology.edges[e][1], e};
+  }
+  return topology;
+}
+
+std::vector<double> edge_lengths(const MeshTopology& topology, const std::vector<Vec3>& positions) {
+  std::vector<double> lengths(topology.edges.size());
+  for (std::size_t e = 0; e < lengths.size(); ++e) {
+    lengths[e] = (positions[topology.edges[e][1]] - positions[topology.edges[e][0]]).norm();
+  }
+  return lengths;
+}
+
+}  // namespace flowskin::tracking

@@ -1,0 +1,245 @@
+#include "tracking/tracker.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "tracking/advection/particle_paths.h"
+#include "tracking/advection/projection.h"
+#include "tracking/extraction/extract_surface.h"
+#include "tracking/fairing/fairing.h"
+#include "tracking/fairing/repair.h"
+#include "tracking/mesh/mesh_measures.h"
+#include "tracking/mesh/topology.h"
+#include "tracking/topology/guard.h"
+#include "tracking/topology/material.h"
+
+namespace flowskin::tracking {
+namespace {
+
+constexpr double kDefaultEdgeInSpacings = 0.8;
+constexpr int kMostSubsteps = 1000;
+
+// Adds the time until its end to a sum.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void require(bool condition, const std::string& name, double value, const std::string& wanted) {
+  if (!condition) {
+    throw std::invalid_argument("tracker settings: " + name + " is " + std::to_string(value) + ", but must be " +
+                                wanted);
+  }
+}
+
+TrackerSettings filled_in(TrackerSettings settings) {
+  require(std::isfinite(settings.spacing) && settings.spacing > 0, "spacing", settings.spacing, "positive (m)");
+  require(std::isfinite(settings.edge_length) && settings.edge_length >= 0, "edge_length", settings.edge_length,
+          "positive (m), or 0 for 0.8 spacings");
+  require(settings.max_motion > 0, "max_motion", settings.max_motion, "positive (effective radii)");
+  require(settings.fairing_iterations >= 0, "fairing_iterations", settings.fairing_iterations, "0 or more");
+  require(settings.fairing_stiffness >= 0 && settings.fairing_stiffness <= 1, "fairing_stiffness",
+          settings.fairing_stiffness, "from 0 to 1");
+  if (settings.field.radius == 0) settings.field = default_field_settings(settings.spacing);
+  require(std::isfinite(settings.field.radius) && settings.field.radius > 0, "field.radius", settings.field.radius,
+          "positive (m), or 0 for the default");
+  require(settings.field.threshold > 0, "field.threshold", settings.field.threshold, "positive");
+  require(settings.field.weight > 0, "field.weight", settings.field.weight, "positive");
+  if (settings.edge_length == 0) settings.edge_length = kDefaultEdgeInSpacings * settings.spacing;
+  return settings;
+}
+
+}  // namespace
+
+class TrackerImpl {
+ public:
+  TrackerImpl(TrackerSettings settings, const Particles& particles)
+      : settings_(filled_in(std::move(settings))), method_(make_velocity_method(settings_.velocity)) {
+    check_particles(particles);
+    particles_ = particles;
+    rebuild_field();
+    if (field_) adopt(extract_raw());
+    finish();
+  }
+
+  void advance(const Particles& particles) {
+    check_particles(particles);
+    report_ = {};
+    if (particles.positions.empty() || particles_.positions.empty() || mesh_.positions.empty()) {
+      restart(particles);
+    } else {
+      advect(particles);
+      Projection projection = fair_and_project();
+      if (settings_.guard) guard(projection);
+    }
+    finish();
+  }
+
+  const SurfaceMesh& mesh() const { return mesh_; }
+  const TrackerReport& report() const { return report_; }
+  const TrackerSettings& settings() const { return settings_; }
+
+ private:
+  void rebuild_field() {
+    field_.reset();
+    if (!particles_.positions.empty()) {
+      field_.emplace(particles_.positions, particles_.velocities, settings_.field);
+    }
+  }
+
+  SurfaceGeometry extract_raw() const { return extract_raw_surface(*field_, settings_.edge_length); }
+
+  // Makes the raw surface the tracked mesh; it takes its material from the old mesh and the particles.
+  void adopt(const SurfaceGeometry& raw) {
+    const SurfaceGeometry geometry = improve_surface(*field_, settings_.edge_length, raw);
+    std::vector<Vec3> positions = geometry.positions;
+    const Projection projection = project_to_surface(*field_, default_projection(settings_.field), positions);
+    MaterialSettings material;
+    material.reach = settings_.edge_length;
+    material.same_material = 3 * settings_.spacing;
+    material.same_vertex = settings_.edge_length / 3;
+    mesh_ = carry_material(mesh_, geometry, projection.normals, *field_, particles_, material);
+    topology_ = build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
+    rest_lengths_ = edge_lengths(topology_, mesh_.positions);
+    velocities_known_ = false;
+  }
+
+  // There was no surface before, or there are no particles now.
+  void restart(const Particles& particles) {
+    Stopwatch watch(report_.seconds_guard);
+    particles_ = particles;
+    rebuild_field();
+    const bool had_surface = !mesh_.positions.empty();
+    const std::uint64_t next_id = mesh_.next_id;
+    mesh_ = {};
+    mesh_.next_id = next_id;
+    if (field_) adopt(extract_raw());
+    const bool has_surface = !mesh_.positions.empty();
+    report_.reextracted = had_surface || has_surface;
+    if (report_.reextracted) report_.reason = has_surface ? "a surface appeared" : "the surface vanished";
+  }
+
+  // Carries the vertices to the time of the new particles, in substeps.
+  void advect(const Particles& particles) {
+    const ParticlePaths paths(particles_, particles);
+    const double limit = settings_.max_motion * settings_.field.radius;
+    report_.substeps =
+        static_cast<int>(std::clamp(std::ceil(paths.longest_path() / limit), 1.0, double{kMostSubsteps}));
+    const double duration = paths.end_time() - paths.begin_time();
+    const auto field_at = [&](double time) { return paths.field(time, settings_.field); };
+    // The velocities of the last call hold at the start, unless particles come or go.
+    std::vector<Vec3> first;
+    if (velocities_known_ && particles_.ids == particles.ids) first = mesh_.velocities;
+
+    for (int substep = 0; substep < report_.substeps && duration != 0; ++substep) {
+      const double time = paths.begin_time() + duration * substep / report_.substeps;
+      const bool last = substep + 1 == report_.substeps;
+      const double next = last ? paths.end_time() : paths.begin_time() + duration * (substep + 1) / report_.substeps;
+      {
+        Stopwatch watch(report_.seconds_velocity);
+        advect_step(*method_, mesh_, settings_.integrator, *field_, field_at, time, next - time, first,
+                    mesh_.positions);
+        first.clear();
+        field_.emplace(field_at(next));
+      }
+      Stopwatch watch(report_.seconds_projection);
+      project_to_surface(*field_, default_projection(settings_.field), mesh_.positions);
+    }
+    particles_ = particles;
+    if (report_.substeps == 0 || duration == 0) rebuild_field();
+  }
+
+  Projection fair_and_project() {
+    {
+      Stopwatch watch(report_.seconds_fairing);
+      fair(*field_, topology_, rest_lengths_, {settings_.fairing_iterations, settings_.fairing_stiffness},
+           mesh_.positions);
+    }
+    Projection projection;
+    {
+      Stopwatch watch(report_.seconds_projection);
+      projection = project_to_surface(*field_, default_projection(settings_.field), mesh_.positions);
+    }
+    Stopwatch watch(report_.seconds_fairing);
+    repair(*field_, default_projection(settings_.field), topology_, mesh_.triangles, mesh_.positions, projection);
+    return projection;
+  }
+
+  // Replaces a mesh that does not fit the field any more.
+  void guard(const Projection& projection) {
+    Stopwatch watch(report_.seconds_guard);
+    const SurfaceGeometry raw = extract_raw();
+    const GuardVerdict verdict = inspect(*field_, raw, mesh_.positions, mesh_.triangles, topology_, projection,
+                                         default_guard(settings_.spacing, settings_.edge_length, settings_.field));
+    report_.expected_components = verdict.expected_components;
+    report_.expected_volume = verdict.expected_volume;
+    if (verdict.reasons.empty()) return;
+    report_.reextracted = true;
+    for (const std::string& reason : verdict.reasons) {
+      report_.reason += (report_.reason.empty() ? "" : "; ") + reason;
+    }
+    adopt(raw);
+  }
+
+  // Velocities at the vertices, and the measures of the mesh as it is now.
+  void finish() {
+    velocities_known_ = true;
+    if (field_ && !mesh_.positions.empty()) {
+      Stopwatch watch(report_.seconds_velocity);
+      method_->evaluate(*field_, mesh_, mesh_.positions, mesh_.velocities);
+    }
+    const MeshComponents components = mesh_components(mesh_.positions, mesh_.triangles);
+    report_.components = components.count;
+    report_.volume = mesh_volume(mesh_.positions, mesh_.triangles);
+    report_.area = mesh_area(mesh_.positions, mesh_.triangles);
+    report_.max_distance = largest_distance();
+    // Without a comparison of its own, the mesh is a fresh extraction itself.
+    if (report_.expected_components == 0) {
+      report_.expected_components = report_.components;
+      report_.expected_volume = report_.volume;
+    }
+  }
+
+  double largest_distance() const {
+    double largest = 0;
+#pragma omp parallel for reduction(max : largest) schedule(static)
+    for (int v = 0; v < static_cast<int>(mesh_.positions.size()); ++v) {
+      largest = std::max(largest, surface_distance(*field_, mesh_.positions[v]).distance);
+    }
+    return largest;
+  }
+
+  TrackerSettings settings_;
+  std::unique_ptr<VelocityMethod> method_;
+  Particles particles_;                 // of the last call
+  std::optional<MetaballField> field_;  // of these particles; none where there are none
+  SurfaceMesh mesh_;
+  MeshTopology topology_;
+  std::vector<double> rest_lengths_;  // of the springs [FMM13, 3.4], one an edge
+  bool velocities_known_ = false;     // mesh_.velocities are the method's, at the time of particles_
+  TrackerReport report_;
+};
+
+Tracker::Tracker(TrackerSettings settings, const Particles& particles)
+    : impl_(std::make_unique<TrackerImpl>(std::move(settings), particles)) {}
+Tracker::~Tracker() = default;
+Tracker::Tracker(Tracker&&) noexcept = default;
+Tracker& Tracker::operator=(Tracker&&) noexcept = default;
+
+void Tracker::advance(const Particles& particles) { impl_->advance(particles); }
+const SurfaceMesh& Tracker::mesh() const { return impl_->mesh(); }
+const TrackerReport& Tracker::report() const { return impl_->report(); }
+const TrackerSettings& Tracker::settings() const { return impl_->settings(); }
+
+}  // namespace flowskin::tracking
