@@ -80,8 +80,10 @@ void sort_by_id(ParticleState& state, const std::string& name) {
 }  // namespace
 
 ParticleState particles_from_ply(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  const PlyFile ply = read_ply(file);
+  return particles_from_ply(read_ply(file), file.string());
+}
+
+ParticleState particles_from_ply(const PlyFile& ply, const std::string& name) {
   const auto find = [&ply](std::initializer_list<const char*> names) { return find_column(ply, names); };
   const std::array<const Column*, 3> place{find({"x"}), find({"y"}), find({"z"})};
   if (std::find(place.begin(), place.end(), nullptr) != place.end())

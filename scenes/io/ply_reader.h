@@ -25,5 +25,7 @@ PlyFile read_ply(const std::filesystem::path& file);
 /// Particles from columns x, y, z and, where present, vx, vy, vz (or velocity_x, ...), rest_x, rest_y, rest_z, id,
 /// density.
 ParticleState particles_from_ply(const std::filesystem::path& file);
+/// The same from a file already read; `name` stands for it in messages.
+ParticleState particles_from_ply(const PlyFile& ply, const std::string& name);
 
 }  // namespace flowskin::scenes

@@ -43,8 +43,11 @@ struct Label {
     second_corner = first_corner + Vec2f(first.width * label_height + label_gap, 0);
   }
 
-  /// Distance to the nearest stroke, in cells.
+  /// Distance to the nearest stroke, in cells; a large number where no pen can reach.
   float distance(const Vec2f& point) const {
+    const Vec2f from_middle = (point - Vec2f(0.5F, 0.5F)).cwiseAbs();
+    if (from_middle.y() > label_height / 2 + 2 * pen_radius || from_middle.x() > label_height + 2 * pen_radius)
+      return 1;
     return label_height * std::min(first.distance((point - first_corner) / label_height),
                                    second.distance((point - second_corner) / label_height));
   }
@@ -60,7 +63,11 @@ float coverage(float distance, float radius, float pixel) {
 Image checker_texture(int size) {
   Image image{size, size, std::vector<Color>(static_cast<std::size_t>(size) * static_cast<std::size_t>(size))};
   std::vector<Label> labels;
-  for (int i = 0; i < cells * cells; ++i) labels.emplace_back(i % cells, i / cells);
+  std::vector<CellStyle> styles;
+  for (int i = 0; i < cells * cells; ++i) {
+    labels.emplace_back(i % cells, i / cells);
+    styles.push_back(cell_style(i % cells, i / cells));
+  }
   const float pixel = static_cast<float>(cells) / static_cast<float>(size);
   const Vec3 line = linear_from_oklch(0.98, 0.0, 0);
 #pragma omp parallel for schedule(static)
@@ -71,7 +78,7 @@ Image checker_texture(int size) {
       const int column = std::min(static_cast<int>(place.x()), cells - 1),
                 row = std::min(static_cast<int>(place.y()), cells - 1);
       const Vec2f inside = place - Vec2f(static_cast<float>(column), static_cast<float>(row));
-      const CellStyle style = cell_style(column, row);
+      const CellStyle& style = styles[row * cells + column];
       const float edge = std::min({inside.x(), 1 - inside.x(), inside.y(), 1 - inside.y()});
       const double on_line = coverage(edge, line_width, pixel);
       const double on_label = coverage(labels[row * cells + column].distance(inside), pen_radius, pixel);

@@ -84,7 +84,7 @@ Image marble_texture(int size, unsigned seed) {
   const TilingNoise bend_u(first, 3, 5), bend_v(first + 1, 3, 5), cloud(first + 2, 2, 6), coming(first + 3, 3, 1);
   const TilingNoise thick_lines(first + 4, 3, 4), thin_lines(first + 5, 5, 4);
   const Vec3 stone = linear_from_oklch(0.955, 0.012, 0.22), shade = linear_from_oklch(0.74, 0.012, 0.70);
-  const Vec3 ink = linear_from_oklch(0.34, 0.025, 0.72);
+  const Vec3 ink = linear_from_oklch(0.29, 0.025, 0.72);
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
@@ -92,7 +92,7 @@ Image marble_texture(int size, unsigned seed) {
       const double bent_u = u + 0.11 * bend_u(u, v), bent_v = v + 0.11 * bend_v(u, v);
       // Thick veins come and go with a slow noise; thin ones fill the space between.
       const double thick = std::clamp(0.55 + 1.2 * coming(u, v), 0.0, 1.0) * vein(thick_lines(bent_u, bent_v), 22);
-      const double thin = 0.40 * vein(thin_lines(bent_u, bent_v), 40);
+      const double thin = 0.52 * vein(thin_lines(bent_u, bent_v), 40);
       const double dark = 0.9 * (thick + thin * (1 - thick));
       const double shadow = std::clamp(0.22 - 0.55 * cloud(bent_u, bent_v), 0.0, 1.0);
       const Vec3 ground = (1 - shadow) * stone + shadow * shade;

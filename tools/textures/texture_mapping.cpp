@@ -124,6 +124,9 @@ std::array<Vec2f, 3> spherical_corners(const tracking::SurfaceMesh& mesh, const 
   return {uv[0].cast<float>(), uv[1].cast<float>(), uv[2].cast<float>()};
 }
 
+/// x itself from 0 to 1, mirrored again and again beyond: for material that an emitter poured in later.
+double fold(double x) { return std::abs(std::remainder(x, 2.0)); }
+
 }  // namespace
 
 RestFrame rest_frame(const std::vector<Vec3>& rest_positions) {
@@ -137,6 +140,7 @@ RestFrame rest_frame(const std::vector<Vec3>& rest_positions) {
   rest.center = (low + high) / 2;
   const double size = (high - low).maxCoeff();
   if (size > 0) rest.size = size;
+  rest.height = high.y() - low.y();
   return rest;
 }
 
@@ -193,9 +197,14 @@ std::vector<Vec2f> vertex_uvs(const tracking::SurfaceMesh& mesh, const scenes::T
 }
 
 Color rest_color(const Vec3& rest_position, const RestFrame& rest) {
+  // Layers: hue and lightness rise with the height at rest, dark blue at the bottom, yellow on top. Blocks of an eighth
+  // of the body, light and dark in turn, tell material at the same height apart; tanh() keeps their edges soft.
   const Vec3 p = (rest_position - rest.center) / rest.size;
-  const double height = std::clamp(p.y() + 0.5, 0.0, 1.0);
-  return encode_srgb(linear_from_oklch(0.5 + 0.3 * height, 0.15, height));
+  const double height = fold(p.y() * rest.size / (rest.height > 0 ? rest.height : rest.size) + 0.5);
+  const auto wave = [](double x) { return std::cos(8 * std::numbers::pi * x); };
+  const double blocks = std::tanh(4 * wave(p.x()) * wave(p.y()) * wave(p.z()));
+  const double hue = 0.76 - 0.50 * height + 0.10 * (fold(p.x() + 0.5) - 0.5);
+  return encode_srgb(linear_from_oklch(0.42 + 0.38 * height + 0.09 * blocks, 0.155, hue));
 }
 
 SurfaceFrame dress(const tracking::SurfaceMesh& mesh, double time, const scenes::TextureSpec& texture,

@@ -1,0 +1,129 @@
+#include "tools/io/file_info.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <functional>
+
+#include "scenes/io/obj_reader.h"
+#include "scenes/io/ply_reader.h"
+#include "scenes/scene_file.h"
+#include "tools/errors.h"
+#include "tools/frame_data.h"
+#include "tracking/mesh/mesh_check.h"
+#include "tracking/mesh/mesh_measures.h"
+
+namespace flowskin::tools {
+namespace {
+
+using Positions = std::vector<Vec3>;
+using Triangles = std::vector<tracking::Triangle>;
+
+std::string bounds_line(const Positions& positions) {
+  Vec3 low = positions[0], high = positions[0];
+  for (const Vec3& x : positions) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  return fmt::format("bounds: x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to {:.6g} m", low.x(), high.x(), low.y(),
+                     high.y(), low.z(), high.z());
+}
+
+std::string property_line(const scenes::PlyFile& ply) {
+  std::string names;
+  for (const auto& [name, column] : ply.vertex) names += (names.empty() ? "" : " ") + name;
+  return "properties: " + names;
+}
+
+Positions vertex_positions(const scenes::PlyFile& ply, const std::string& name) {
+  Positions positions(ply.vertex_count);
+  constexpr std::array<const char*, 3> axes{"x", "y", "z"};
+  for (int k = 0; k < 3; ++k) {
+    const auto column = ply.vertex.find(axes[k]);
+    if (column == ply.vertex.end()) throw InputError(name + ": no vertex property \"" + axes[k] + "\"");
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i][k] = column->second[i];
+  }
+  return positions;
+}
+
+void describe_surface(FileInfo& info, const Positions& positions, const Triangles& triangles) {
+  info.lines.push_back(fmt::format("surface: {} vertices, {} triangles", positions.size(), triangles.size()));
+  info.lines.push_back(bounds_line(positions));
+  const std::vector<std::string> problems = tracking::mesh_problems(positions, triangles);
+  info.sound = problems.empty();
+  info.lines.push_back(fmt::format("area: {:.6g} m^2", tracking::mesh_area(positions, triangles)));
+  if (info.sound) {
+    info.lines.push_back(fmt::format("volume: {:.6g} m^3", tracking::mesh_volume(positions, triangles)));
+    info.lines.push_back(fmt::format("parts: {}, Euler characteristic {}",
+                                     tracking::mesh_components(positions, triangles).count,
+                                     tracking::euler_characteristic(positions, triangles)));
+    const tracking::MeshQuality quality = tracking::mesh_quality(positions, triangles);
+    info.lines.push_back(fmt::format("edges: {:.4g} to {:.4g} m, mean {:.4g} m", quality.shortest_edge,
+                                     quality.longest_edge, quality.mean_edge));
+    info.lines.emplace_back("sound: closed, two-manifold, outward, no unreferenced vertex");
+  } else {
+    info.lines.emplace_back("not a sound closed surface:");
+    for (const std::string& problem : problems) info.lines.push_back("  " + problem);
+  }
+}
+
+template <class T, class Measure>
+std::string range_line(const char* what, const char* unit, const std::vector<T>& values, Measure measure) {
+  double low = measure(values[0]), high = low, sum = 0;
+  for (const T& value : values) {
+    low = std::min(low, measure(value));
+    high = std::max(high, measure(value));
+    sum += measure(value);
+  }
+  return fmt::format("{}: {:.6g} to {:.6g} {}, mean {:.6g}", what, low, high, unit,
+                     sum / static_cast<double>(values.size()));
+}
+
+void describe_particles(FileInfo& info, const std::string& name, const scenes::PlyFile& ply) {
+  const scenes::ParticleState state = scenes::particles_from_ply(ply, name);
+  info.lines.push_back(fmt::format("particles: {}", state.positions.size()));
+  info.lines.push_back(property_line(ply));
+  if (state.positions.empty()) return;
+  info.lines.push_back(bounds_line(state.positions));
+  info.lines.push_back(range_line("speed", "m/s", state.velocities, [](const Vec3& v) { return v.norm(); }));
+  if (std::any_of(state.densities.begin(), state.densities.end(), [](double d) { return d != 0; }))
+    info.lines.push_back(range_line("density", "kg/m^3", state.densities, std::identity()));
+  info.lines.push_back(fmt::format("ids: {} to {}, each once", state.ids.front(), state.ids.back()));
+  info.lines.emplace_back("sound: all values finite");
+}
+
+FileInfo describe(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  FileInfo info;
+  if (extension == ".obj") {
+    const sph::TriangleMesh mesh = scenes::read_obj(file);
+    describe_surface(info, mesh.positions, mesh.triangles);
+  } else if (extension == ".ply") {
+    const scenes::PlyFile ply = scenes::read_ply(file);
+    if (ply.triangles.empty()) {
+      describe_particles(info, file.string(), ply);
+    } else {
+      describe_surface(info, vertex_positions(ply, file.string()), ply.triangles);
+      info.lines.insert(info.lines.begin() + 1, property_line(ply));
+    }
+  } else {
+    throw InputError(file.string() + ": expected an OBJ or PLY file (by the end of its name)");
+  }
+  return info;
+}
+
+}  // namespace
+
+FileInfo describe_file(const std::filesystem::path& file) {
+  try {
+    return describe(file);
+  } catch (const scenes::SceneError& error) {
+    throw InputError(error.what());
+  }
+}
+
+}  // namespace flowskin::tools

@@ -1,0 +1,20 @@
+// What is in a mesh or particle file, in words.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace flowskin::tools {
+
+struct FileInfo {
+  std::vector<std::string> lines;  ///< A description for people, one fact a line.
+  bool sound = true;               ///< A closed, two-manifold, outward surface, or particles without fault.
+};
+
+/// Describes a surface (OBJ, PLY with faces) or particles (PLY without). What is wrong with a mesh that can be read
+/// stands in the lines and makes it unsound.
+/// @throws InputError where the file cannot be read at all, or is of another kind.
+FileInfo describe_file(const std::filesystem::path& file);
+
+}  // namespace flowskin::tools
