@@ -12,9 +12,9 @@ namespace flowskin::tracking {
 namespace {
 
 // Chosen by measurement, see docs/velocity_methods.md.
-constexpr double least_total_weight = 1e-3;  // of the total velocity's rows where the motion is rigid
-constexpr double total_weight = 5;           // more where it is not
-constexpr double damping_of_total = 1.5;     // as in total_tangential_velocity
+constexpr double least_total_weight = 3e-4;  // of the total velocity's rows where the motion is rigid
+constexpr double total_weight = 8;           // more where it is not
+constexpr double damping_of_total = 1;       // as in total_tangential_velocity
 
 /// The rows of K and H: how they change along the two tangents, and what is left to be made up for. K in 1/radius^2 and
 /// H in 1/radius make them comparable with each other and with the rows of the total velocity.
