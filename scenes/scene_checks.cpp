@@ -1,5 +1,6 @@
 #include "scenes/scene_checks.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
 

@@ -186,8 +186,8 @@ Table<Scene> solver_keys() {
              "Upper corner of the domain."),
   };
   for (Key<S>& key : table) {
-    key = std::move(key).only_for("particles.source \"simulation\"",
-                                  [](const S& s) { return s.particles.source == ParticlesSpec::Source::simulation; });
+    key.condition = "particles.source \"simulation\"";
+    key.applies = [](const S& s) { return s.particles.source == ParticlesSpec::Source::simulation; };
   }
   return table;
 }

@@ -13,7 +13,7 @@ namespace flowskin::scenes {
 namespace {
 
 std::string range_in_words(const Range& range) {
-  const bool bounded_above = range.max < max_coordinate;
+  const bool bounded_above = range.max < 1000;  // Larger limits only catch slips.
   if (!bounded_above) {
     if (range.min <= -max_coordinate) return "number";
     return fmt::format("number {} {}", range.open_min ? ">" : ">=", write_number(range.min));

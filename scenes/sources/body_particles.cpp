@@ -1,5 +1,6 @@
 #include "scenes/sources/body_particles.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <random>

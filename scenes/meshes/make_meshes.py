@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Makes the OBJ files of this folder. Lengths in m, y up; run it here after changing a number."""
+import math
+
+STEPS, DEPTH, HEIGHT, LANDING, WIDTH = 6, 0.20, 0.14, 0.90, 1.40
+
+
+class Mesh:
+    def __init__(self):
+        self.index, self.faces = {}, []
+
+    def face(self, *points):
+        """Corners counter-clockwise seen from outside; equal points become one vertex."""
+        corners = [self.index.setdefault(tuple(round(c, 9) + 0.0 for c in p), len(self.index) + 1) for p in points]
+        self.faces.append(corners)
+
+    def write(self, name, title):
+        with open(name, "w", encoding="ascii", newline="\n") as file:
+            file.write(f"# {title}\n# Made by make_meshes.py\no {name[:-4]}\n")
+            for p in self.index:
+                file.write("v " + " ".join(f"{c:g}" for c in p) + "\n")
+            for corners in self.faces:
+                file.write("f " + " ".join(map(str, corners)) + "\n")
+
+
+def stairs():
+    """A closed solid: a landing from x = -LANDING to 0, then STEPS risers and the treads between them."""
+    mesh, half = Mesh(), WIDTH / 2
+    edges = [-LANDING] + [DEPTH * k for k in range(STEPS)]
+    tops = [HEIGHT * (STEPS - k) for k in range(STEPS)]
+    for k, top in enumerate(tops):
+        x0, x1 = edges[k], edges[k + 1]
+        below = tops[k + 1] if k + 1 < STEPS else 0
+        mesh.face((x0, top, half), (x1, top, half), (x1, top, -half), (x0, top, -half))
+        mesh.face((x1, below, half), (x1, below, -half), (x1, top, -half), (x1, top, half))
+        mesh.face((x0, 0, half), (x0, 0, -half), (x1, 0, -half), (x1, 0, half))
+        # The corner at `below` belongs to the next riser too: the sides must have it as well.
+        corner = [(x1, below)] if below > 0 else []
+        side = [(x0, 0), (x1, 0)] + corner + [(x1, top), (x0, top)]
+        mesh.face(*[(x, y, half) for x, y in side])
+        mesh.face(*[(x, y, -half) for x, y in reversed(side)])
+    mesh.face((-LANDING, 0, half), (-LANDING, tops[0], half), (-LANDING, tops[0], -half), (-LANDING, 0, -half))
+    mesh.write("stairs.obj", f"A flight of {STEPS} steps, {DEPTH} m deep and {HEIGHT} m high, with a landing")
+
+
+def stairs_surroundings():
+    """Floor in front of the stairs, and walls around everything that hold the fluid together."""
+    half, foot, far, top = WIDTH / 2, DEPTH * (STEPS - 1), 2.2, 1.7
+    floor = Mesh()
+    floor.face((foot, 0, half), (far, 0, half), (far, 0, -half), (foot, 0, -half))
+    floor.write("stairs_floor.obj", "The floor in front of the stairs")
+    walls = Mesh()
+    back = -LANDING
+    walls.face((back, 0, half), (back, top, half), (far, top, half), (far, 0, half))
+    walls.face((back, 0, -half), (far, 0, -half), (far, top, -half), (back, top, -half))
+    walls.face((back, 0, -half), (back, top, -half), (back, top, half), (back, 0, half))
+    walls.face((far, 0, -half), (far, 0, half), (far, top, half), (far, top, -half))
+    walls.write("stairs_walls.obj", "Walls around the stairs, without roof and floor")
+
+
+def box():
+    """An open box, 1 m wide and deep and 0.6 m high, seen from inside."""
+    mesh, h, top = Mesh(), 0.5, 0.6
+    mesh.face((-h, 0, h), (h, 0, h), (h, 0, -h), (-h, 0, -h))
+    mesh.face((-h, 0, h), (-h, 0, -h), (-h, top, -h), (-h, top, h))
+    mesh.face((h, 0, -h), (h, 0, h), (h, top, h), (h, top, -h))
+    mesh.face((-h, 0, -h), (h, 0, -h), (h, top, -h), (-h, top, -h))
+    mesh.face((h, 0, h), (-h, 0, h), (-h, top, h), (h, top, h))
+    mesh.write("box.obj", "An open box of 1 x 0.6 x 1 m; its floor is y = 0")
+
+
+def torus(large=0.22, small=0.09, around=48, across=24):
+    mesh = Mesh()
+
+    def point(i, j):
+        u, v = 2 * math.pi * i / around, 2 * math.pi * j / across
+        r = large + small * math.cos(v)
+        return (r * math.cos(u), r * math.sin(u), small * math.sin(v))
+
+    for i in range(around):
+        for j in range(across):
+            a, b, c, d = point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)
+            mesh.face(*[tuple(round(x, 6) for x in p) for p in (a, b, c, d)])
+    mesh.write("torus.obj", f"A closed torus about the z axis, radii {large} and {small} m")
+
+
+def cone(radius=0.2, height=0.25, around=48):
+    """A closed cone that stands on y = 0, its tip cut off by a small cap."""
+    mesh, cap = Mesh(), 0.04
+
+    def ring(r, y, i):
+        a = 2 * math.pi * i / around
+        return (round(r * math.cos(a), 6), y, round(-r * math.sin(a), 6))
+
+    for i in range(around):
+        a, b = ring(radius, 0.0, i), ring(radius, 0.0, i + 1)
+        c, d = ring(cap, height, i + 1), ring(cap, height, i)
+        mesh.face(a, b, c, d)
+        mesh.face(d, c, (0.0, height, 0.0))
+        mesh.face(b, a, (0.0, 0.0, 0.0))
+    mesh.write("cone.obj", "A blunt cone of radius 0.2 m and height 0.25 m on y = 0")
+
+
+if __name__ == "__main__":
+    stairs()
+    stairs_surroundings()
+    box()
+    torus()
+    cone()
