@@ -30,8 +30,12 @@ struct StaticSample {
   float distance = infinity;
   std::array<std::int16_t, 3> normal{0, 0, 0};  // times 32767
   std::uint16_t object = no_object;
-  bool sees_sun = false, sees_sky = false;  // along this sample's directions
+  bool sees_sun = false;      // along this sample's direction
+  std::uint8_t sees_sky = 0;  // a bit for each of its directions
 };
+
+// Directions towards the sky for each sample; one suffices where a pixel has many samples.
+int sky_rays_for(int samples) { return samples <= 16 ? 2 : 1; }
 
 // Above this number of samples a picture (192 MB) they are traced again for each frame.
 constexpr std::size_t max_kept_samples = 16'000'000;
@@ -86,10 +90,11 @@ std::vector<Vec3> points_to_see(const std::vector<scenes::BoundarySpec>& boundar
 sph::Box bounding_box(const std::vector<Vec3>& points) {
   sph::Box box{points.front(), points.front()};
   for (const Vec3& point : points) {
+    if (!point.allFinite())
+      throw InputError("the walls or the fluid of the scene to draw have a place that is not finite");
     box.min = box.min.cwiseMin(point);
     box.max = box.max.cwiseMax(point);
   }
-  if (!box.min.allFinite() || !box.max.allFinite()) throw InputError("the walls of the scene to draw are not finite");
   return box;
 }
 
@@ -117,6 +122,9 @@ struct Renderer::Impl {
     const Vec2f& offset = pixel_offsets_[std::size_t(sample)];
     return camera_.direction(float(x) + offset.x(), float(y) + offset.y());
   }
+  Vec3f sky_direction(const Vec3f& normal, std::size_t light, int k) const {
+    return rotate_to(normal, sky_directions_[light * std::size_t(sky_rays_) + std::size_t(k)]);
+  }
   StaticSample trace_static(int x, int y, int sample) const;
   Sample shade_static(const StaticSample& fixed, const Subject& subject, const Vec3f& ray, std::size_t light) const;
   Sample shade_subject(const RayHit& hit, const Subject& subject, const Vec3f& ray, std::size_t light) const;
@@ -131,9 +139,10 @@ struct Renderer::Impl {
   Camera camera_;
   TraceScene walls_;
   std::vector<Vec3f> wall_reflectance_;
+  int sky_rays_;
   float step_off_;  // m: how far from a surface a secondary ray starts
   std::vector<Vec2f> pixel_offsets_;
-  std::vector<Vec3f> sun_directions_, sky_directions_;  // interleaved_sets * samples; the sky's about +z
+  std::vector<Vec3f> sun_directions_, sky_directions_;  // interleaved_sets * samples (* sky_rays_); the sky's about +z
   std::vector<StaticSample> static_samples_;            // empty where they would be too many
 };
 
@@ -145,7 +154,8 @@ Renderer::Impl::Impl(const scenes::RenderSpec& spec, const std::vector<scenes::B
       style_(style_from_name(spec.style)),
       lighting_(make_lighting(spec)),
       camera_(place_camera(spec.camera, double(spec.width) / spec.height, seen), spec.width, spec.height, origin),
-      walls_(device) {
+      walls_(device),
+      sky_rays_(sky_rays_for(spec.samples)) {
   const float size = std::max(float((box.max - box.min).norm()), 1e-6f);
   step_off_ = 1e-4f * size;
   ground_.visible = spec.ground;
@@ -157,7 +167,7 @@ Renderer::Impl::Impl(const scenes::RenderSpec& spec, const std::vector<scenes::B
   const int sets = interleaved_sets * spec.samples;
   pixel_offsets_ = scrambled_sobol(spec.samples, 1);
   sun_directions_ = cone_directions(sets, 2, lighting_.sun_direction, lighting_.sun_radius);
-  sky_directions_ = cosine_hemisphere(sets, 3);
+  sky_directions_ = cosine_hemisphere(sets * sky_rays_, 3);
   keep_static_samples();
 }
 
@@ -218,7 +228,10 @@ StaticSample Renderer::Impl::trace_static(int x, int y, int sample) const {
   const std::size_t light = light_index(x, y, sample);
   const Vec3f& sun = sun_directions_[light];
   result.sees_sun = normal.dot(sun) > 0 && !walls_.occluded(from, sun, 0, infinity);
-  result.sees_sky = !walls_.occluded(from, rotate_to(normal, sky_directions_[light]), 0, infinity);
+  for (int k = 0; k < sky_rays_; ++k) {
+    const bool open = !walls_.occluded(from, sky_direction(normal, light, k), 0, infinity);
+    result.sees_sky = std::uint8_t(result.sees_sky | (open ? 1 << k : 0));
+  }
   return result;
 }
 
@@ -242,13 +255,16 @@ Sample Renderer::Impl::shade_static(const StaticSample& fixed, const Subject& su
     if (fade >= 1) return sample;
   }
   const Vec3f from = sample.point + step_off_ * sample.normal;
+  const float sky_share = pi / float(sky_rays_);
   const Vec3f& sun = sun_directions_[light];
   if (fixed.sees_sun && !subject.scene().occluded(from, sun, 0, infinity)) {
     sample.irradiance = sample.normal.dot(sun) * lighting_.sun_irradiance;
   }
-  const Vec3f sky = rotate_to(sample.normal, sky_directions_[light]);
-  const bool open = fixed.sees_sky && !subject.scene().occluded(from, sky, 0, infinity);
-  sample.irradiance += pi * (open ? environment(lighting_, ground_, from, sky) : blocked_radiance());
+  for (int k = 0; k < sky_rays_; ++k) {
+    const Vec3f sky = sky_direction(sample.normal, light, k);
+    const bool open = (fixed.sees_sky >> k & 1) != 0 && !subject.scene().occluded(from, sky, 0, infinity);
+    sample.irradiance += sky_share * (open ? environment(lighting_, ground_, from, sky) : blocked_radiance());
+  }
   return sample;
 }
 
@@ -271,6 +287,7 @@ Sample Renderer::Impl::shade_subject(const RayHit& hit, const Subject& subject, 
   const auto blocked = [&](const Vec3f& direction) {
     return subject.scene().occluded(from, direction, 0, infinity) || walls_.occluded(from, direction, 0, infinity);
   };
+  const float sky_share = pi / float(sky_rays_);
   const Vec3f& sun = sun_directions_[light];
   const float sun_cosine = sample.normal.dot(sun);
   const Vec3f view = -ray;
@@ -279,8 +296,10 @@ Sample Renderer::Impl::shade_subject(const RayHit& hit, const Subject& subject, 
     sample.extra =
         highlight(sample.normal, view, lighting_.sun_direction, lighting_.sun_radius) * lighting_.sun_irradiance;
   }
-  const Vec3f sky = rotate_to(sample.normal, sky_directions_[light]);
-  sample.irradiance += pi * (blocked(sky) ? blocked_radiance() : environment(lighting_, ground_, from, sky));
+  for (int k = 0; k < sky_rays_; ++k) {
+    const Vec3f sky = sky_direction(sample.normal, light, k);
+    sample.irradiance += sky_share * (blocked(sky) ? blocked_radiance() : environment(lighting_, ground_, from, sky));
+  }
   // The coat: what it mirrors does not reach the colour below.
   const float mirrored = fresnel(sample.normal.dot(view));
   const Vec3f mirror = (ray - 2 * ray.dot(sample.normal) * sample.normal).normalized();

@@ -85,8 +85,9 @@ void TraceScene::commit() {
   box_max_ = {bounds.upper_x, bounds.upper_y, bounds.upper_z};
 }
 
-// Most rays miss the fluid by far: this spares them the call. An empty box (min > max) is never met.
+// Most rays miss the fluid by far: this spares them the call.
 bool TraceScene::meets_box(const Vec3f& origin, const Vec3f& direction, float far) const {
+  if (!(box_min_.x() <= box_max_.x())) return false;  // nothing in it
   const Vec3f inverse = direction.cwiseInverse();
   const Vec3f a = (box_min_ - origin).cwiseProduct(inverse), b = (box_max_ - origin).cwiseProduct(inverse);
   // In this order std::min and std::max skip the NaN of 0 * infinity (a ray within a side of the box).
