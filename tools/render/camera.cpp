@@ -36,6 +36,23 @@ View view_along(const Vec3& forward, const Vec3& wanted_up) {
   return view;
 }
 
+// Moves a camera at depth z0 sideways until what it sees is in the middle of the picture.
+Eigen::Array2d centered(const std::vector<Vec3>& points, const View& view, Eigen::Array2d center, double z0,
+                        double middle) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < 10; ++iteration) {
+    Eigen::Array2d low = Eigen::Array2d::Constant(infinity), high = -low;
+    for (const Vec3& point : points) {
+      const Eigen::Array2d across(point.dot(view.right), point.dot(view.up));
+      const Eigen::Array2d slope = (across - center) / std::max(point.dot(view.forward) - z0, 1e-9);
+      low = low.min(slope);
+      high = high.max(slope);
+    }
+    center += (low + high) / 2 * (middle - z0);
+  }
+  return center;
+}
+
 }  // namespace
 
 Camera::Camera(const scenes::CameraSpec& spec, int width, int height, const Vec3& origin)
@@ -65,34 +82,33 @@ Vec2f Camera::project(const Vec3& point) const {
 
 scenes::CameraSpec place_camera(const scenes::CameraSpec& spec, double aspect, const std::vector<Vec3>& points) {
   if (!spec.position.isZero(0)) return spec;
-  constexpr double margin = 1.12;
+  constexpr double margin = 1.12, infinity = std::numeric_limits<double>::infinity();
   const double slope_y = half_height(spec) / margin, slope_x = slope_y * aspect;
   const View view = view_along(Vec3(-0.55, -0.5, -1), spec.up);
-  // In the camera's axes, a point is in view where |x - cx| <= slope_x (z - cz): four half planes, of which the points
-  // lying farthest out count. The nearest camera meets the tighter pair and is centred on the other.
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  double right = -infinity, left = -infinity, top = -infinity, bottom = -infinity;
-  for (const Vec3& point : points) {
-    const double x = point.dot(view.right), y = point.dot(view.up), z = point.dot(view.forward);
-    right = std::max(right, x - slope_x * z);
-    left = std::max(left, -x - slope_x * z);
-    top = std::max(top, y - slope_y * z);
-    bottom = std::max(bottom, -y - slope_y * z);
-  }
   scenes::CameraSpec placed = spec;
   if (points.empty()) {
     placed.position = -5 * view.forward;
     placed.look_at = Vec3::Zero();
     return placed;
   }
-  const double depth = -std::max((right + left) / (2 * slope_x), (top + bottom) / (2 * slope_y));
-  Vec3 center = Vec3::Zero();
-  for (const Vec3& point : points) center += point / double(points.size());
-  // All points coincide: stand back by a metre.
-  const double distance = std::max(center.dot(view.forward) - depth, 1e-9);
-  const double z = distance > 1e-8 ? depth : center.dot(view.forward) - 1;
-  placed.position = (right - left) / 2 * view.right + (top - bottom) / 2 * view.up + z * view.forward;
-  placed.look_at = placed.position + (center.dot(view.forward) - z) * view.forward;
+  // In the camera's axes a point is in view where |x - x0| <= slope_x (z - z0), and alike for y: for each side of the
+  // picture, the point lying farthest out counts. The pair of sides that is tighter decides how near the camera can be.
+  Eigen::Array2d outer = Eigen::Array2d::Constant(-infinity), inner = outer;
+  const Eigen::Array2d slope(slope_x, slope_y);
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& point : points) {
+    const Eigen::Array2d across(point.dot(view.right), point.dot(view.up));
+    const double z = point.dot(view.forward);
+    outer = outer.max(across - slope * z);
+    inner = inner.max(-across - slope * z);
+    sum += point;
+  }
+  const double middle = sum.dot(view.forward) / double(points.size());
+  double z0 = -((outer + inner) / (2 * slope)).maxCoeff();
+  if (!(middle - z0 > 1e-9)) z0 = middle - 1;  // all points coincide: stand back by a metre
+  const Eigen::Array2d center = centered(points, view, (outer - inner) / 2, z0, middle);
+  placed.position = center.x() * view.right + center.y() * view.up + z0 * view.forward;
+  placed.look_at = placed.position + (middle - z0) * view.forward;
   return placed;
 }
 
