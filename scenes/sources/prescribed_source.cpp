@@ -14,7 +14,7 @@ PrescribedSource::PrescribedSource(const Scene& scene)
     : motion_(scene.particles.motion), spacing_(scene.particles.spacing) {
   state_.positions = scene.particles.positions.empty() ? body_particles(scene) : scene.particles.positions;
   const std::size_t count = state_.positions.size();
-  if (count == 0) throw SceneError(scene.name + ": the bodies hold no particles; make particles.spacing smaller");
+  if (count == 0) throw SceneError(scene.name + ": there are neither bodies nor particles.positions: nothing moves");
   state_.ids.resize(count);
   std::iota(state_.ids.begin(), state_.ids.end(), std::uint64_t{0});
   state_.rest_positions = state_.positions;
