@@ -60,6 +60,12 @@ TrackerSettings filled_in(TrackerSettings settings) {
   return settings;
 }
 
+// What was tolerated, as far as it is still there.
+MeshDefects at_most(const MeshDefects& a, const MeshDefects& b) {
+  return {std::min(a.off_vertices, b.off_vertices), std::min(a.bad_triangles, b.bad_triangles),
+          std::min(a.long_edges, b.long_edges), std::min(a.off_triangles, b.off_triangles)};
+}
+
 }  // namespace
 
 class TrackerImpl {
@@ -100,6 +106,10 @@ class TrackerImpl {
 
   SurfaceGeometry extract_raw() const { return extract_raw_surface(*field_, settings_.edge_length); }
 
+  GuardSettings guard_settings() const {
+    return default_guard(settings_.spacing, settings_.edge_length, settings_.field);
+  }
+
   // Makes the raw surface the tracked mesh; it takes its material from the old mesh and the particles.
   void adopt(const SurfaceGeometry& raw) {
     const SurfaceGeometry geometry = improve_surface(*field_, settings_.edge_length, raw);
@@ -112,6 +122,7 @@ class TrackerImpl {
     mesh_ = carry_material(mesh_, geometry, projection.normals, *field_, particles_, material);
     topology_ = build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
     rest_lengths_ = edge_lengths(topology_, mesh_.positions);
+    tolerated_ = find_defects(*field_, mesh_.positions, mesh_.triangles, topology_, projection, guard_settings());
     velocities_known_ = false;
   }
 
@@ -180,11 +191,15 @@ class TrackerImpl {
   void guard(const Projection& projection) {
     Stopwatch watch(report_.seconds_guard);
     const SurfaceGeometry raw = extract_raw();
-    const GuardVerdict verdict = inspect(*field_, raw, mesh_.positions, mesh_.triangles, topology_, projection,
-                                         default_guard(settings_.spacing, settings_.edge_length, settings_.field));
+    const MeshDefects defects =
+        find_defects(*field_, mesh_.positions, mesh_.triangles, topology_, projection, guard_settings());
+    const GuardVerdict verdict = inspect(raw, mesh_.positions, mesh_.triangles, defects, tolerated_, guard_settings());
     report_.expected_components = verdict.expected_components;
     report_.expected_volume = verdict.expected_volume;
-    if (verdict.reasons.empty()) return;
+    if (verdict.reasons.empty()) {
+      tolerated_ = at_most(tolerated_, defects);
+      return;
+    }
     report_.reextracted = true;
     for (const std::string& reason : verdict.reasons) {
       report_.reason += (report_.reason.empty() ? "" : "; ") + reason;
@@ -227,6 +242,7 @@ class TrackerImpl {
   SurfaceMesh mesh_;
   MeshTopology topology_;
   std::vector<double> rest_lengths_;  // of the springs [FMM13, 3.4], one an edge
+  MeshDefects tolerated_;             // since the mesh was extracted
   bool velocities_known_ = false;     // mesh_.velocities are the method's, at the time of particles_
   TrackerReport report_;
 };

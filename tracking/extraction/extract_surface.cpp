@@ -18,7 +18,7 @@ constexpr int kCollapsePasses = 4;
 constexpr int kFlipPasses = 3;
 constexpr int kRounds = 4;
 constexpr int kRelaxationsPerRound = 2;
-constexpr double kLargestVolumeChange = 0.02;
+constexpr double kLargestVolumeChange = 0.01;
 
 MeshTopology topology_of(const SurfaceGeometry& surface) {
   return build_topology(static_cast<int>(surface.positions.size()), surface.triangles);

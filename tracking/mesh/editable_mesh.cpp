@@ -3,12 +3,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "tracking/mesh/mesh_measures.h"
 
 namespace flowskin::tracking {
 namespace {
 
 constexpr double kLargestTurn = 0.5;     // cosine of 60 degrees
 constexpr double kSliver = 0.15;         // shape() of a triangle not to be made
+constexpr double kTinyEdge = 0.15;       // of the longest edge
 constexpr double kFlat = 0.8;            // cosine of the largest angle between triangles whose edge may be flipped
 constexpr double kDelaunaySlack = 1e-6;  // rad
 
@@ -53,6 +57,12 @@ std::vector<int> EditableMesh::ring(int vertex) const {
   return neighbors;
 }
 
+Vec3 EditableMesh::star_normal(int vertex) const {
+  Vec3 sum = Vec3::Zero();
+  for (int t : stars_[vertex]) sum += doubled_area_vector(positions_, triangles_[t]);
+  return sum;
+}
+
 bool EditableMesh::wings(int a, int b, std::array<int, 2>& triangles, std::array<int, 2>& opposite) const {
   int count = 0;
   for (int t : stars_[a]) {
@@ -68,6 +78,9 @@ bool EditableMesh::wings(int a, int b, std::array<int, 2>& triangles, std::array
 }
 
 bool EditableMesh::collapse_keeps_shape(int kept, int removed, double longest_edge) const {
+  const Vec3 outward = star_normal(kept) + star_normal(removed);
+  // A tiny move does no harm to well shaped triangles, and slivers around it have no shape to lose.
+  const bool tiny = (positions_[kept] - positions_[removed]).norm() < kTinyEdge * longest_edge;
   for (int t : stars_[removed]) {
     if (contains(triangles_[t], kept)) continue;
     std::array<Vec3, 3> before, after;
@@ -75,12 +88,17 @@ bool EditableMesh::collapse_keeps_shape(int kept, int removed, double longest_ed
       const int vertex = triangles_[t][corner];
       before[corner] = positions_[vertex];
       after[corner] = vertex == removed ? positions_[kept] : before[corner];
-      if (vertex != removed && (positions_[vertex] - positions_[kept]).norm() > longest_edge) return false;
+      if (vertex == removed) continue;
+      const double length = (positions_[vertex] - positions_[kept]).norm();
+      if (length > longest_edge && length > (positions_[vertex] - positions_[removed]).norm()) return false;
     }
-    const double shape_after = shape(after[0], after[1], after[2]);
-    if (shape_after < std::min(kSliver, shape(before[0], before[1], before[2])) || shape_after <= 0) return false;
-    const Vec3 normal_before = unit_normal(before[0], before[1], before[2]);
-    if (unit_normal(after[0], after[1], after[2]).dot(normal_before) < kLargestTurn) return false;
+    const double shape_before = shape(before[0], before[1], before[2]);
+    if (tiny && shape_before < kSliver) continue;
+    if (shape(after[0], after[1], after[2]) < std::min(kSliver, shape_before)) return false;
+    // The normal of a sliver is noise; its surroundings say where it should look.
+    const Vec3 normal_before =
+        shape_before < kSliver ? Vec3(outward.normalized()) : unit_normal(before[0], before[1], before[2]);
+    if (!(unit_normal(after[0], after[1], after[2]).dot(normal_before) > kLargestTurn)) return false;
   }
   return true;
 }

@@ -15,7 +15,7 @@ class EditableMesh {
 
   /// Merges `removed` into `kept`, which stays where it is. Refused, with false, where the edge does not exist, where
   /// the link condition fails (the mesh would stop being two-manifold: Dey et al. 1999), where a triangle would turn by
-  /// more than 60 degrees or become a sliver, or where an edge would become longer than `longest_edge` (m).
+  /// more than 60 degrees or become a sliver, or where an edge would grow beyond `longest_edge` (m).
   bool collapse(int kept, int removed, double longest_edge);
 
   /// Turns edge ab to the other diagonal of its two triangles. Refused, with false, where that edge exists already,
@@ -35,6 +35,7 @@ class EditableMesh {
  private:
   /// The two triangles of edge ab and the vertices opposite of it; false where there are not exactly two.
   bool wings(int a, int b, std::array<int, 2>& triangles, std::array<int, 2>& opposite) const;
+  Vec3 star_normal(int vertex) const;
   bool collapse_keeps_shape(int kept, int removed, double longest_edge) const;
 
   std::vector<Vec3>& positions_;

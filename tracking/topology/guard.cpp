@@ -10,7 +10,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kFoldedCosine = -0.5;  // neighbouring triangles with an inner angle below 60 degrees
+constexpr double kFoldedCosine = -0.8;  // neighbouring triangles with an inner angle below 37 degrees
 constexpr double kLeastShape = 1e-3;    // doubled area over the longest squared side
 
 bool is_degenerate(const Triangle& triangle, const std::vector<Vec3>& positions) {
@@ -21,41 +21,33 @@ bool is_degenerate(const Triangle& triangle, const std::vector<Vec3>& positions)
   return !(doubled_area_vector(positions, triangle).norm() > kLeastShape * longest);
 }
 
-std::string count_of(std::size_t count, const std::string& what) { return std::to_string(count) + " " + what; }
-
 // Components that are large enough to count.
 int count_large(const MeshComponents& components, double small_volume) {
   return static_cast<int>(std::count_if(components.volumes.begin(), components.volumes.end(),
                                         [&](double volume) { return std::abs(volume) >= small_volume; }));
 }
 
-void check_vertices(const Projection& projection, double tolerance, std::vector<std::string>& reasons) {
-  if (!projection.failed.empty() && !(projection.max_distance <= tolerance)) {
-    reasons.push_back(count_of(projection.failed.size(), "vertices off the surface"));
-  }
-}
-
-void check_edges(const std::vector<Vec3>& positions, const MeshTopology& topology, double longest_edge,
-                 std::vector<std::string>& reasons) {
-  const std::vector<double> lengths = edge_lengths(topology, positions);
-  const auto count =
-      std::count_if(lengths.begin(), lengths.end(), [&](double length) { return length > longest_edge; });
-  if (count > 0) reasons.push_back(count_of(static_cast<std::size_t>(count), "overstretched edges"));
+void check_defects(int count, int tolerated, const std::string& what, std::vector<std::string>& reasons) {
+  if (count > tolerated) reasons.push_back(std::to_string(count) + " " + what);
 }
 
 // The middles of the triangles must lie near the surface, too: a mesh whose vertices are all on f = 0 may still cut
 // through the fluid where parts have merged.
-void check_triangle_middles(const MetaballField& field, const std::vector<Vec3>& positions,
-                            const std::vector<Triangle>& triangles, double sagitta, std::vector<std::string>& reasons) {
+int count_off_triangles(const MetaballField& field, const std::vector<Vec3>& positions,
+                        const std::vector<Triangle>& triangles, double sagitta) {
+  const ProjectionSettings projection = default_projection(field.settings());
   std::vector<char> off(triangles.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     const auto& [a, b, c] = triangles[t];
-    const SurfaceDistance middle = surface_distance(field, (positions[a] + positions[b] + positions[c]) / 3);
-    off[t] = !(middle.distance <= sagitta);
+    const Vec3 middle = (positions[a] + positions[b] + positions[c]) / 3;
+    SurfaceDistance distance = surface_distance(field, middle);
+    if (distance.distance <= sagitta) continue;
+    // |f| / |grad f| is too large where grad f nearly vanishes, as between two sheets: measure the way itself.
+    Vec3 foot = middle;
+    off[t] = !project_point(field, projection, foot, distance) || (foot - middle).norm() > sagitta;
   }
-  const auto count = std::count(off.begin(), off.end(), 1);
-  if (count > 0) reasons.push_back(count_of(static_cast<std::size_t>(count), "triangles off the surface"));
+  return static_cast<int>(std::count(off.begin(), off.end(), 1));
 }
 
 void check_coverage(const SurfaceGeometry& fresh, const std::vector<Vec3>& positions,
@@ -71,7 +63,7 @@ void check_coverage(const SurfaceGeometry& fresh, const std::vector<Vec3>& posit
   }
   const auto count = std::count(uncovered.begin(), uncovered.end(), 1);
   if (count > 0) {
-    reasons.push_back(count_of(static_cast<std::size_t>(count), "places of the surface are not covered by the mesh"));
+    reasons.push_back(std::to_string(count) + " places of the surface are not covered by the mesh");
   }
 }
 
@@ -104,8 +96,23 @@ std::vector<int> bad_triangles(const std::vector<Vec3>& positions, const std::ve
   return bad;
 }
 
-GuardVerdict inspect(const MetaballField& field, const SurfaceGeometry& fresh, const std::vector<Vec3>& positions,
-                     const std::vector<Triangle>& triangles, const MeshTopology& topology, const Projection& projection,
+MeshDefects find_defects(const MetaballField& field, const std::vector<Vec3>& positions,
+                         const std::vector<Triangle>& triangles, const MeshTopology& topology,
+                         const Projection& projection, const GuardSettings& settings) {
+  MeshDefects defects;
+  if (!(projection.max_distance <= settings.tolerance)) {
+    defects.off_vertices = static_cast<int>(projection.failed.size());
+  }
+  defects.bad_triangles = static_cast<int>(bad_triangles(positions, triangles, topology, projection.normals).size());
+  const std::vector<double> lengths = edge_lengths(topology, positions);
+  defects.long_edges = static_cast<int>(
+      std::count_if(lengths.begin(), lengths.end(), [&](double length) { return length > settings.longest_edge; }));
+  defects.off_triangles = count_off_triangles(field, positions, triangles, settings.sagitta);
+  return defects;
+}
+
+GuardVerdict inspect(const SurfaceGeometry& fresh, const std::vector<Vec3>& positions,
+                     const std::vector<Triangle>& triangles, const MeshDefects& defects, const MeshDefects& tolerated,
                      const GuardSettings& settings) {
   GuardVerdict verdict;
   const MeshComponents components = mesh_components(positions, triangles);
@@ -121,14 +128,13 @@ GuardVerdict inspect(const MetaballField& field, const SurfaceGeometry& fresh, c
     verdict.reasons.push_back(std::to_string(large) + " parts instead of " + std::to_string(expected_large));
   }
   if (!(std::abs(verdict.volume - verdict.expected_volume) <= settings.volume_tolerance * verdict.expected_volume)) {
-    const double percent = 100 * (verdict.volume / verdict.expected_volume - 1);
-    verdict.reasons.push_back("volume off by " + std::to_string(percent) + " %");
+    const double permille = std::round(1000 * (verdict.volume / verdict.expected_volume - 1));
+    verdict.reasons.push_back("volume off by " + std::to_string(static_cast<int>(permille)) + " per mille");
   }
-  check_vertices(projection, settings.tolerance, verdict.reasons);
-  const std::size_t bad = bad_triangles(positions, triangles, topology, projection.normals).size();
-  if (bad > 0) verdict.reasons.push_back(count_of(bad, "degenerate or folded triangles"));
-  check_edges(positions, topology, settings.longest_edge, verdict.reasons);
-  check_triangle_middles(field, positions, triangles, settings.sagitta, verdict.reasons);
+  check_defects(defects.off_vertices, tolerated.off_vertices, "vertices off the surface", verdict.reasons);
+  check_defects(defects.bad_triangles, tolerated.bad_triangles, "degenerate or folded triangles", verdict.reasons);
+  check_defects(defects.long_edges, tolerated.long_edges, "overstretched edges", verdict.reasons);
+  check_defects(defects.off_triangles, tolerated.off_triangles, "triangles off the surface", verdict.reasons);
   check_coverage(fresh, positions, triangles, settings, verdict.reasons);
   return verdict;
 }

@@ -23,6 +23,19 @@ struct GuardSettings {
 /// tolerance 1e-4 radii, longest_edge 4, reach 1.25 and sagitta 0.6 edge lengths, small_volume 4 spacings cubed.
 GuardSettings default_guard(double spacing, double edge_length, const FieldSettings& field);
 
+/// Places of a mesh that are not as they should be, by kind.
+struct MeshDefects {
+  int off_vertices = 0;   ///< Vertices off the surface.
+  int bad_triangles = 0;  ///< Triangles without area, inside out or folded onto a neighbour.
+  int long_edges = 0;     ///< Overstretched edges.
+  int off_triangles = 0;  ///< Triangles whose middle is off the surface: the mesh cuts through fluid or air.
+};
+
+/// Counts the defects of a mesh whose vertices have been projected.
+MeshDefects find_defects(const MetaballField& field, const std::vector<Vec3>& positions,
+                         const std::vector<Triangle>& triangles, const MeshTopology& topology,
+                         const Projection& projection, const GuardSettings& settings);
+
 /// What the guard saw.
 struct GuardVerdict {
   std::vector<std::string> reasons;             ///< Why the mesh must be replaced, in words; empty: it fits.
@@ -30,11 +43,12 @@ struct GuardVerdict {
   double volume = 0, expected_volume = 0;       ///< m^3
 };
 
-/// Compares a mesh, whose vertices have been projected, with a raw extraction of the same field. Looks for vertices and
-/// triangles off the surface, triangles without area, inside out or folded onto a neighbour, overstretched edges, a
-/// different number of components, another volume, and parts of the surface that the mesh does not cover.
-GuardVerdict inspect(const MetaballField& field, const SurfaceGeometry& fresh, const std::vector<Vec3>& positions,
-                     const std::vector<Triangle>& triangles, const MeshTopology& topology, const Projection& projection,
+/// Compares a mesh with a raw extraction of the same field: defects beyond the tolerated ones, the number of
+/// components, the volume, and parts of the surface that the mesh does not cover.
+/// @param tolerated the defects a fresh mesh has itself: where the surface has a crease finer than the mesh, another
+///   extraction would not help.
+GuardVerdict inspect(const SurfaceGeometry& fresh, const std::vector<Vec3>& positions,
+                     const std::vector<Triangle>& triangles, const MeshDefects& defects, const MeshDefects& tolerated,
                      const GuardSettings& settings);
 
 /// Triangles that must not be written: without area, inside out, or folded onto a neighbour. Ascending.
