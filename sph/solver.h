@@ -13,6 +13,25 @@ namespace flowskin::sph {
 
 enum class KernelType { cubic_spline, wendland_c2 };
 
+/// How the density of a particle is found:
+/// - summation: rho_i = rho_0 (V sum_j W_ij + sum_b V_b W_ib), scaled so that the lattice of the start has the rest
+/// density; at
+///   a free surface, where neighbours are missing, never below the rest density. Cannot drift: it is a function of the
+///   positions.
+/// - continuity: d rho_i / dt = rho_0 V sum_j v_ij . grad W_ij, with density diffusion [Molteni and Colagrossi 2009].
+/// Smoother
+///   pressure in calm flow, but drifts from the true distances of the particles in long and in very viscous flow.
+enum class DensityMethod { summation, continuity };
+
+/// Discrete form of the viscous force. Both give the same kinematic viscosity inside the fluid:
+/// - monaghan: a_i = 10 nu sum V_j (v_ij . x_ij) / (r^2 + 0.01 h^2) grad W, along the line of the pair [Monaghan 2005,
+///   Sect. 8; the factor is 2 (d + 2) in d dimensions]. Keeps angular momentum, does not slow a rigid rotation, and
+///   meets the condition of a free surface without shear stress [Colagrossi et al. 2011].
+/// - morris: a_i = 2 nu sum V_j (x_ij . grad W) / (r^2 + 0.01 h^2) v_ij, along the velocity difference [Morris et al.
+/// 1997].
+///   Slows free bodies of fluid that turn.
+enum class ViscosityForm { monaghan, morris };
+
 /// A setting is impossible (negative spacing, a fluid body without particles, ...); the message says which and why.
 struct SettingsError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
@@ -26,16 +45,18 @@ struct BlowUpError : std::runtime_error {
 
 /// Physical and numerical settings; SI units. Defaults give a stable, nearly incompressible fluid.
 struct SolverSettings {
-  double spacing = 0;              ///< Initial distance of neighbouring particles (m); must be given.
-  double support_radius = 2.0;     ///< Support radius of the kernel, in spacings (2: about 30 neighbours).
+  double spacing = 0;           ///< Initial distance of neighbouring particles (m); must be given.
+  double support_radius = 2.0;  ///< Support radius of the kernel, in spacings (2: about 30 neighbours).
   KernelType kernel = KernelType::wendland_c2;
-  double rest_density = 1000;      ///< kg/m^3
-  double viscosity = 1e-6;         ///< Kinematic viscosity (m^2/s), laminar [Morris et al. 1997].
-  Vec3 gravity{0, -9.81, 0};       ///< m/s^2
-  double max_speed = 0;            ///< Fastest flow expected (m/s); 0: from heights, gravity and initial velocities.
-  double speed_of_sound = 0;       ///< m/s; 0: ten times the fastest flow expected, so that density stays within 1 %.
-  double xsph = 0;                 ///< Share of XSPH smoothing in the velocity that moves particles, 0 to 1.
-  double density_diffusion = 0.1;  ///< Coefficient delta of the density diffusion [Molteni and Colagrossi 2009]; 0: none.
+  double rest_density = 1000;  ///< kg/m^3
+  double viscosity = 1e-6;     ///< Kinematic viscosity (m^2/s), laminar.
+  ViscosityForm viscosity_form = ViscosityForm::monaghan;
+  Vec3 gravity{0, -9.81, 0};  ///< m/s^2
+  double max_speed = 0;       ///< Fastest flow expected (m/s); 0: from heights, gravity and initial velocities.
+  double speed_of_sound = 0;  ///< m/s; 0: ten times the fastest flow expected, so that density stays within 1 %.
+  double xsph = 0;            ///< Share of XSPH smoothing in the velocity that moves particles, 0 to 1.
+  DensityMethod density_method = DensityMethod::summation;
+  double density_diffusion = 0.1;  ///< Continuity density only: coefficient delta of its diffusion; 0: none.
   double acoustic_cfl = 0.4;       ///< dt <= acoustic_cfl h / (c + |v|), h the smoothing length
   double viscous_cfl = 0.125;      ///< dt <= viscous_cfl h^2 / nu
   double force_cfl = 0.25;         ///< dt <= force_cfl sqrt(h / |a|)
@@ -48,10 +69,10 @@ struct SolverSettings {
 struct FluidBody {
   enum class Shape { block, ball, mesh };
   Shape shape = Shape::block;
-  Box block;                   ///< shape block (m)
-  Vec3 center = Vec3::Zero();  ///< shape ball (m)
-  double radius = 0;           ///< shape ball (m)
-  TriangleMesh mesh;           ///< shape mesh: a closed surface (m)
+  Box block;                             ///< shape block (m)
+  Vec3 center = Vec3::Zero();            ///< shape ball (m)
+  double radius = 0;                     ///< shape ball (m)
+  TriangleMesh mesh;                     ///< shape mesh: a closed surface (m)
   Vec3 velocity = Vec3::Zero();          ///< Initial velocity (m/s).
   Vec3 angular_velocity = Vec3::Zero();  ///< Initial spin about the body's centroid (rad/s).
 };
@@ -83,10 +104,11 @@ struct SimulationSetup {
 struct FluidState {
   double time = 0;  ///< s
   std::vector<std::uint64_t> ids;
-  std::vector<Vec3> positions;       ///< m
-  std::vector<Vec3> velocities;      ///< m/s
-  std::vector<Vec3> rest_positions;  ///< Place of the material in the first frame (m); emitted particles continue the jet backwards.
-  std::vector<double> densities;     ///< kg/m^3
+  std::vector<Vec3> positions;   ///< m
+  std::vector<Vec3> velocities;  ///< m/s
+  std::vector<Vec3>
+      rest_positions;  ///< Place of the material in the first frame (m); emitted particles continue the jet backwards.
+  std::vector<double> densities;  ///< kg/m^3
 };
 
 /// Which limit set the time step, and all of them (s).
@@ -99,8 +121,8 @@ struct TimeStepReport {
 struct SolverStatistics {
   std::uint64_t steps = 0;
   std::uint64_t list_rebuilds = 0;
-  std::uint64_t left_domain = 0;      ///< Particles removed because they left the domain.
-  std::uint64_t wall_crossings = 0;   ///< Particle paths that would have passed a wall and were put back.
+  std::uint64_t left_domain = 0;     ///< Particles removed because they left the domain.
+  std::uint64_t wall_crossings = 0;  ///< Particle paths that would have passed a wall and were put back.
   std::uint64_t emitted = 0;
   std::uint64_t steps_limited_by_acoustic = 0, steps_limited_by_viscous = 0, steps_limited_by_force = 0;
   TimeStepReport last_step;

@@ -1,0 +1,90 @@
+#include "sph/hilbert_order.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+namespace flowskin::sph {
+
+std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z, int levels) {
+  // Skilling's algorithm: undo the excess work of each level, then Gray encode, then interleave the bits.
+  std::array<std::uint32_t, 3> axes{x, y, z};
+  const std::uint32_t top = std::uint32_t{1} << (levels - 1);
+  for (std::uint32_t bit = top; bit > 1; bit >>= 1) {
+    const std::uint32_t below = bit - 1;
+    for (std::uint32_t& axis : axes) {
+      if (axis & bit) {
+        axes[0] ^= below;
+      } else {
+        const std::uint32_t swap = (axes[0] ^ axis) & below;
+        axes[0] ^= swap;
+        axis ^= swap;
+      }
+    }
+  }
+  axes[1] ^= axes[0];
+  axes[2] ^= axes[1];
+  std::uint32_t flip = 0;
+  for (std::uint32_t bit = top; bit > 1; bit >>= 1) {
+    if (axes[2] & bit) flip ^= bit - 1;
+  }
+  std::uint64_t index = 0;
+  for (int level = levels - 1; level >= 0; --level) {
+    for (const std::uint32_t axis : axes) index = (index << 1) | (((axis ^ flip) >> level) & 1U);
+  }
+  return index;
+}
+
+void HilbertOrder::compute(std::span<const Eigen::Vector3f> points, float cell_size) {
+  const std::size_t count = points.size();
+  keys_.resize(count);
+  sorted_keys_.resize(count);
+  order_.resize(count);
+  sorted_order_.resize(count);
+  if (count == 0) return;
+
+  Eigen::Vector3f low = points[0], high = points[0];
+  for (const Eigen::Vector3f& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const float extent = std::max((high - low).maxCoeff(), cell_size);
+  const float cells = std::min(extent / cell_size + 1, 2097151.0F);
+  const int levels = std::max(1, static_cast<int>(std::bit_width(static_cast<std::uint32_t>(cells))));
+  const float scale = (cells - 1) / extent;
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3f cell = (points[i] - low) * scale;
+    keys_[i] = hilbert_index(static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
+                             static_cast<std::uint32_t>(cell.z()), levels);
+    order_[i] = static_cast<std::uint32_t>(i);
+  }
+
+  // Stable radix sort, eleven bits at a time.
+  constexpr int digit_bits = 11;
+  constexpr std::size_t buckets = std::size_t{1} << digit_bits;
+  for (int shift = 0; shift < 3 * levels; shift += digit_bits) {
+    std::array<std::uint32_t, buckets> start{};
+    for (const std::uint64_t key : keys_) ++start[(key >> shift) & (buckets - 1)];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& s : start) {
+      const std::uint32_t in_bucket = s;
+      s = sum;
+      sum += in_bucket;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t place = start[(keys_[i] >> shift) & (buckets - 1)]++;
+      sorted_keys_[place] = keys_[i];
+      sorted_order_[place] = order_[i];
+    }
+    keys_.swap(sorted_keys_);
+    order_.swap(sorted_order_);
+  }
+}
+
+std::size_t HilbertOrder::memory_bytes() const {
+  return (keys_.capacity() + sorted_keys_.capacity()) * sizeof(std::uint64_t) +
+         (order_.capacity() + sorted_order_.capacity()) * sizeof(std::uint32_t);
+}
+
+}  // namespace flowskin::sph

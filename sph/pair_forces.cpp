@@ -1,0 +1,235 @@
+#include "sph/pair_forces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+
+#include "sph/equation_of_state.h"
+#include "sph/kernels.h"
+
+namespace flowskin::sph {
+
+PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wall) {
+  const auto gradient_scale = [&](double support) {
+    return with_kernel(s.kernel, [&](auto kernel) { return decltype(kernel)::gradient_scale(support); });
+  };
+  const double support = s.support_radius * s.spacing, h = support / 2;
+  const double cell = s.spacing * s.spacing * s.spacing, volume = cell / lattice_kernel_sum(s);
+  const double gradient = volume * gradient_scale(support);
+  const double viscous = (s.viscosity_form == ViscosityForm::monaghan ? 10 : 2) * s.viscosity;
+  const double c = s.speed_of_sound;
+  inverse_support = static_cast<float>(1 / support);
+  kernel_scale = static_cast<float>(volume / (support * support * support));
+  kernel_gradient = static_cast<float>(gradient);
+  pressure_scale = static_cast<float>(gradient * c * c);
+  diffusion = static_cast<float>(2 * s.density_diffusion * h * c * gradient);
+  viscosity = static_cast<float>(viscous * lattice_viscosity_factor(s) * cell * gradient_scale(support));
+  softening = static_cast<float>(0.01 * h * h);
+  for (int a = 0; a < 3; ++a) compression_gradient[a] = static_cast<float>(s.gravity[a] / (c * c));
+  xsph = static_cast<float>(s.xsph) * kernel_scale;
+  const double wall_scale = gradient_scale(wall.support) * std::pow(wall.support, 3);
+  wall_inverse_support = static_cast<float>(1 / wall.support);
+  wall_gradient = static_cast<float>(wall_scale);
+  wall_pressure = static_cast<float>(wall_scale / gradient);
+  wall_viscosity = static_cast<float>(viscous * wall.friction_factor * wall_scale);
+  wall_softening = static_cast<float>(0.01 * wall.support * wall.support / 4);
+}
+
+float PairCoefficients::pack_pressure(float compression) const {
+  const float density_ratio = 1 + compression;
+  return pressure_scale * clamped_pressure(compression) / (density_ratio * density_ratio);
+}
+
+namespace {
+
+// The particles of one cluster, one a lane; lanes without a particle repeat the first one and are not written back.
+struct Targets {
+  Float8 x, y, z, vx, vy, vz, compression, pressure;
+
+  Targets(const FluidPack* packs, std::uint32_t count) {
+    std::array<std::array<float, PointCluster::width>, 8> rows;
+    for (std::uint32_t k = 0; k < PointCluster::width; ++k) {
+      const FluidPack& p = packs[k < count ? k : 0];
+      rows[0][k] = p.x, rows[1][k] = p.y, rows[2][k] = p.z;
+      rows[3][k] = p.vx, rows[4][k] = p.vy, rows[5][k] = p.vz;
+      rows[6][k] = p.compression, rows[7][k] = p.pressure;
+    }
+    x = load8(rows[0].data()), y = load8(rows[1].data()), z = load8(rows[2].data());
+    vx = load8(rows[3].data()), vy = load8(rows[4].data()), vz = load8(rows[5].data());
+    compression = load8(rows[6].data()), pressure = load8(rows[7].data());
+  }
+};
+
+struct Sums {
+  Float8 ax{}, ay{}, az{};
+  Float8 divergence{}, wall_divergence{};  // sums of s (v_ij . x_ij)
+  Float8 diffusion{};
+  Float8 sx{}, sy{}, sz{};  // XSPH
+  Float8 wall_distance2 = broadcast(1e18F);
+};
+
+// Constants in all lanes.
+struct SplatCoefficients {
+  Float8 inverse_support, viscosity, softening, gx, gy, gz;
+  Float8 wall_inverse_support, wall_pressure, wall_viscosity, wall_softening;
+
+  explicit SplatCoefficients(const PairCoefficients& c)
+      : inverse_support(broadcast(c.inverse_support)),
+        viscosity(broadcast(c.viscosity)),
+        softening(broadcast(c.softening)),
+        gx(broadcast(c.compression_gradient[0])),
+        gy(broadcast(c.compression_gradient[1])),
+        gz(broadcast(c.compression_gradient[2])),
+        wall_inverse_support(broadcast(c.wall_inverse_support)),
+        wall_pressure(broadcast(c.wall_pressure)),
+        wall_viscosity(broadcast(c.wall_viscosity)),
+        wall_softening(broadcast(c.wall_softening)) {}
+};
+
+// Density difference that diffuses. Fluid at rest has a density gradient that must stay: the part of the difference
+// that hydrostatics explains is left out, as in [FDM*19, Eq. 9], but only where the density really differs in that
+// direction: fluid in free fall has no such gradient, and none shall be made.
+inline Float8 diffusing_difference(const Float8& difference, const Float8& hydrostatic) {
+  const Float8 zero{};
+  return difference - min(max(difference, min(hydrostatic, zero)), max(hydrostatic, zero));
+}
+
+template <typename Kernel, bool monaghan, bool continuity, bool with_xsph>
+inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidPack& j, Sums& sums) {
+  const Float8 dx = i.x - broadcast(j.x), dy = i.y - broadcast(j.y), dz = i.z - broadcast(j.z);
+  const Float8 ux = i.vx - broadcast(j.vx), uy = i.vy - broadcast(j.vy), uz = i.vz - broadcast(j.vz);
+  const Float8 r2 = dx * dx + dy * dy + dz * dz;
+  const Float8 q = sqrt(r2) * c.inverse_support;
+  const Float8 s = Kernel::shape(q);
+  const Float8 approach = ux * dx + uy * dy + uz * dz;
+  if constexpr (continuity) {
+    sums.divergence += s * approach;
+    const Float8 hydrostatic = -(c.gx * dx + c.gy * dy + c.gz * dz);
+    sums.diffusion += s * diffusing_difference(broadcast(j.compression) - i.compression, hydrostatic);
+  }
+  const Float8 pressure = i.pressure + broadcast(j.pressure);
+  const Float8 friction = c.viscosity / (r2 + c.softening);
+  if constexpr (monaghan) {
+    const Float8 f = s * (pressure - friction * approach);
+    sums.ax += f * dx;
+    sums.ay += f * dy;
+    sums.az += f * dz;
+  } else {
+    const Float8 f = s * pressure, g = s * friction * r2;
+    sums.ax += f * dx - g * ux;
+    sums.ay += f * dy - g * uy;
+    sums.az += f * dz - g * uz;
+  }
+  if constexpr (with_xsph) {
+    const Float8 w = Kernel::scaled_value(q);
+    sums.sx -= w * ux;
+    sums.sy -= w * uy;
+    sums.sz -= w * uz;
+  }
+}
+
+// A wall rests, pushes with the pressure of the fluid particle [AIA*12, Eq. 9] and resists shear.
+template <typename Kernel, bool monaghan>
+inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPack& b, Sums& sums) {
+  const Float8 dx = i.x - broadcast(b.x), dy = i.y - broadcast(b.y), dz = i.z - broadcast(b.z);
+  const Float8 r2 = dx * dx + dy * dy + dz * dz;
+  sums.wall_distance2 = min(sums.wall_distance2, r2);
+  const Float8 s = broadcast(b.volume) * Kernel::shape(sqrt(r2) * c.wall_inverse_support);
+  const Float8 approach = i.vx * dx + i.vy * dy + i.vz * dz;
+  sums.wall_divergence += s * approach;
+  const Float8 pressure = i.pressure * c.wall_pressure;
+  const Float8 friction = broadcast(b.stick) * c.wall_viscosity / (r2 + c.wall_softening);
+  if constexpr (monaghan) {
+    const Float8 f = s * (pressure - friction * approach);
+    sums.ax += f * dx;
+    sums.ay += f * dy;
+    sums.az += f * dz;
+  } else {
+    const Float8 f = s * pressure, g = s * friction * r2;
+    sums.ax += f * dx - g * i.vx;
+    sums.ay += f * dy - g * i.vy;
+    sums.az += f * dz - g * i.vz;
+  }
+}
+
+template <typename Kernel, bool monaghan, bool continuity, bool with_xsph>
+void run_forces(const PairCoefficients& coefficients, const PairData& data) {
+  const SplatCoefficients c(coefficients);
+  const PointClusters& clusters = *data.clusters;
+#pragma omp parallel for schedule(dynamic, 32)
+  for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
+    const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
+    const Targets targets(&data.fluid[first], count);
+    Sums sums;
+    for (const std::uint32_t j : data.fluid_lists->of_cluster(cluster)) {
+      add_fluid<Kernel, monaghan, continuity, with_xsph>(c, targets, data.fluid[j], sums);
+    }
+    for (const std::uint32_t b : data.wall_lists->of_cluster(cluster)) {
+      add_wall<Kernel, monaghan>(c, targets, data.walls[b], sums);
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+      // Continuity: d(rho / rho_0)/dt = V sum v_ij . grad W [Monaghan 1992, Eq. 2.17], plus the diffusion.
+      const float rate = coefficients.diffusion * sums.diffusion[k] -
+                         coefficients.kernel_gradient * sums.divergence[k] -
+                         coefficients.wall_gradient * sums.wall_divergence[k];
+      data.rates[first + k] = {sums.ax[k], sums.ay[k], sums.az[k], rate};
+      data.wall_distances[first + k] = std::sqrt(sums.wall_distance2[k]);
+      if constexpr (with_xsph) {
+        data.shifts[first + k] = coefficients.xsph * Eigen::Vector3f(sums.sx[k], sums.sy[k], sums.sz[k]);
+      }
+    }
+  }
+}
+
+template <typename Kernel>
+void run_densities(const PairCoefficients& coefficients, const PairData& data) {
+  const SplatCoefficients c(coefficients);
+  const PointClusters& clusters = *data.clusters;
+#pragma omp parallel for schedule(dynamic, 32)
+  for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
+    const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
+    const Targets i(&data.fluid[first], count);
+    const auto kernel = [&](const auto& j, const Float8& inverse_support) {
+      const Float8 dx = i.x - broadcast(j.x), dy = i.y - broadcast(j.y), dz = i.z - broadcast(j.z);
+      return Kernel::scaled_value(sqrt(dx * dx + dy * dy + dz * dz) * inverse_support);
+    };
+    Float8 sum{}, wall_sum{};
+    for (const std::uint32_t j : data.fluid_lists->of_cluster(cluster)) {
+      sum += kernel(data.fluid[j], c.inverse_support);
+    }
+    for (const std::uint32_t b : data.wall_lists->of_cluster(cluster)) {
+      wall_sum += broadcast(data.walls[b].volume) * kernel(data.walls[b], c.wall_inverse_support);
+    }
+    for (std::uint32_t k = 0; k < count; ++k) {
+      FluidPack& pack = data.fluid[first + k];
+      pack.compression = std::max(0.0F, coefficients.kernel_scale * sum[k] + wall_sum[k] - 1);
+      pack.pressure = coefficients.pack_pressure(pack.compression);
+    }
+  }
+}
+
+template <typename Function>
+void with_bool(bool value, Function function) {
+  value ? function(std::true_type{}) : function(std::false_type{});
+}
+
+}  // namespace
+
+void sum_densities(const PairCoefficients& coefficients, const SolverSettings& settings, const PairData& data) {
+  with_kernel(settings.kernel, [&](auto kernel) { run_densities<decltype(kernel)>(coefficients, data); });
+}
+
+void compute_forces(const PairCoefficients& coefficients, const SolverSettings& settings, const PairData& data) {
+  with_kernel(settings.kernel, [&](auto kernel) {
+    with_bool(settings.viscosity_form == ViscosityForm::monaghan, [&](auto monaghan) {
+      with_bool(settings.density_method == DensityMethod::continuity, [&](auto continuity) {
+        with_bool(!data.shifts.empty(), [&](auto xsph) {
+          run_forces<decltype(kernel), monaghan.value, continuity.value, xsph.value>(coefficients, data);
+        });
+      });
+    });
+  });
+}
+
+}  // namespace flowskin::sph

@@ -1,0 +1,63 @@
+// The pair loops: densities, accelerations and rates of compression from the neighbour lists.
+#pragma once
+
+#include <span>
+
+#include "sph/neighbor_lists.h"
+#include "sph/particle_pack.h"
+#include "sph/solver.h"
+#include "sph/wall_kernel.h"
+
+namespace flowskin::sph {
+
+/// Constants of the pair loops, worked out once from the settings. V is the volume of a particle divided by the kernel
+/// sum of the lattice, G the kernel's gradient scale (kernels.h); an index b means the kernel of the walls.
+struct PairCoefficients {
+  PairCoefficients() = default;
+  PairCoefficients(const SolverSettings& settings, const WallKernel& wall);
+
+  /// Pressure entry of a FluidPack: V G p rho_0 / rho^2 with p clamped at zero.
+  float pack_pressure(float compression) const;
+
+  float inverse_support = 0;           ///< 1 / R
+  float kernel_scale = 0;              ///< V / R^3
+  float kernel_gradient = 0;           ///< V G
+  float pressure_scale = 0;            ///< V G c^2
+  float diffusion = 0;                 ///< 2 delta h c V G
+  float viscosity = 0;                 ///< 10 nu V G (Monaghan's form) or 2 nu V G (Morris's)
+  float softening = 0;                 ///< 0.01 h^2, keeps the viscous force of coincident particles finite
+  float compression_gradient[3] = {};  ///< Slope of the compression of fluid at rest: g / c^2 (1/m)
+  float xsph = 0;                      ///< xsph V / R^3
+  float wall_inverse_support = 0;      ///< 1 / R_b
+  float wall_gradient = 0;             ///< G_b R_b^3
+  float wall_pressure = 0;             ///< G_b R_b^3 / (V G)
+  float wall_viscosity = 0;            ///< as viscosity, with G_b R_b^3 and the walls' friction factor
+  float wall_softening = 0;
+};
+
+/// Result for one particle.
+struct alignas(16) ParticleRates {
+  float ax, ay, az;        ///< Acceleration by pressure and viscosity, without gravity (m/s^2).
+  float compression_rate;  ///< 1/s; continuity density only
+};
+
+/// What the pair loops work on.
+struct PairData {
+  std::span<FluidPack> fluid;
+  const PointClusters* clusters;
+  const NeighborLists* fluid_lists;
+  std::span<const WallPack> walls;
+  const NeighborLists* wall_lists;
+  std::span<ParticleRates> rates;     ///< out
+  std::span<float> wall_distances;    ///< out: distance to the nearest boundary particle in the lists, else 1e9 (m)
+  std::span<Eigen::Vector3f> shifts;  ///< out: XSPH velocity change (m/s); empty where XSPH is off
+};
+
+/// Sets compression and pressure of all packs by summation over the neighbours.
+void sum_densities(const PairCoefficients& coefficients, const SolverSettings& settings, const PairData& data);
+
+/// Sets the rates. In each pair of fluid particles both get exactly opposite forces (the arithmetic is the same up to
+/// sign), so momentum is kept up to the rounding of the sums.
+void compute_forces(const PairCoefficients& coefficients, const SolverSettings& settings, const PairData& data);
+
+}  // namespace flowskin::sph

@@ -1,0 +1,85 @@
+// The fluid particles, one array a quantity, kept in the order of a space-filling curve.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "sph/pair_forces.h"
+#include "sph/particle_pack.h"
+#include "sph/solver.h"
+
+namespace flowskin::sph {
+
+struct ParticleArrays {
+  std::vector<std::uint64_t> ids;
+  std::vector<Vec3> positions;       ///< m
+  std::vector<Vec3> velocities;      ///< m/s
+  std::vector<Vec3> rest_positions;  ///< m
+  std::vector<float> compressions;   ///< rho / rho_0 - 1
+  std::vector<FluidPack> packs;
+  std::vector<ParticleRates> rates;
+  std::vector<float> wall_distances;    ///< m; see PairData
+  std::vector<Eigen::Vector3f> shifts;  ///< XSPH; empty where it is off
+
+  std::size_t size() const { return ids.size(); }
+
+  /// Adds a particle without forces yet.
+  void append(std::uint64_t id, const Vec3& position, const Vec3& velocity, const Vec3& rest_position,
+              bool with_shift) {
+    ids.push_back(id);
+    positions.push_back(position);
+    velocities.push_back(velocity);
+    rest_positions.push_back(rest_position);
+    compressions.push_back(0);
+    packs.push_back({});
+    rates.push_back({});
+    wall_distances.push_back(0);
+    if (with_shift) shifts.push_back(Eigen::Vector3f::Zero());
+  }
+
+  /// Keeps the particles order[0], order[1], ... in this order and drops the others.
+  void rearrange(const std::vector<std::uint32_t>& order) {
+    for_each([&](auto& values) {
+      if (!values.empty()) rearrange_one(values, order);
+    });
+  }
+
+  std::size_t memory_bytes() {
+    std::size_t bytes = scratch_.capacity();
+    for_each([&](auto& values) { bytes += values.capacity() * sizeof(values[0]); });
+    return bytes;
+  }
+
+ private:
+  template <typename Function>
+  void for_each(Function function) {
+    function(ids);
+    function(positions);
+    function(velocities);
+    function(rest_positions);
+    function(compressions);
+    function(packs);
+    function(rates);
+    function(wall_distances);
+    function(shifts);
+  }
+
+  // One raw buffer serves all arrays; their elements are plain numbers.
+  template <typename T>
+  void rearrange_one(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
+    scratch_.resize(std::max(scratch_.size(), order.size() * sizeof(T)));
+    const char* from = reinterpret_cast<const char*>(values.data());
+    char* to = scratch_.data();
+#pragma omp parallel for schedule(static)
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      std::memcpy(to + k * sizeof(T), from + order[k] * sizeof(T), sizeof(T));
+    }
+    values.resize(order.size());
+    std::memcpy(reinterpret_cast<char*>(values.data()), to, order.size() * sizeof(T));
+  }
+
+  std::vector<char> scratch_;
+};
+
+}  // namespace flowskin::sph

@@ -1,0 +1,113 @@
+#include "sph/setup_checks.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+namespace flowskin::sph {
+
+namespace {
+
+constexpr double recommended_skin = 0.3;  // in spacings; measured in tests/benchmarks/sph_benchmark.cpp
+
+std::string number(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+void require(bool holds, const char* setting, double value, const char* expected) {
+  if (!holds) {
+    throw SettingsError(std::string("solver setting ") + setting + " = " + number(value) + ": expected " + expected);
+  }
+}
+
+void check_settings(const SolverSettings& s) {
+  const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
+  const auto not_negative = [](double v) { return std::isfinite(v) && v >= 0; };
+  require(positive(s.spacing), "spacing", s.spacing, "a length greater than 0 m");
+  require(s.support_radius >= 1.5 && s.support_radius <= 4, "support_radius", s.support_radius, "1.5 to 4 spacings");
+  require(positive(s.rest_density), "rest_density", s.rest_density, "a density greater than 0 kg/m^3");
+  require(not_negative(s.viscosity), "viscosity", s.viscosity, "0 m^2/s or more");
+  require(s.gravity.allFinite(), "gravity", s.gravity.norm(), "finite numbers");
+  require(not_negative(s.max_speed), "max_speed", s.max_speed, "0 (automatic) or a speed in m/s");
+  require(not_negative(s.speed_of_sound), "speed_of_sound", s.speed_of_sound, "0 (automatic) or a speed in m/s");
+  require(s.xsph >= 0 && s.xsph <= 1, "xsph", s.xsph, "0 to 1");
+  require(s.density_diffusion >= 0 && s.density_diffusion <= 0.5, "density_diffusion", s.density_diffusion, "0 to 0.5");
+  require(positive(s.acoustic_cfl), "acoustic_cfl", s.acoustic_cfl, "a number greater than 0");
+  require(positive(s.viscous_cfl), "viscous_cfl", s.viscous_cfl, "a number greater than 0");
+  require(positive(s.force_cfl), "force_cfl", s.force_cfl, "a number greater than 0");
+  require(positive(s.max_time_step), "max_time_step", s.max_time_step, "a time greater than 0 s");
+  require(s.skin >= 0 && s.skin <= 2, "skin", s.skin, "0 (automatic) to 2 spacings");
+}
+
+void check_mesh(const TriangleMesh& mesh, const std::string& name) {
+  const int count = static_cast<int>(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) {
+    if (!p.allFinite()) throw SettingsError(name + ": its mesh has a vertex that is not a finite number");
+  }
+  for (const auto& t : mesh.triangles) {
+    for (const int v : t) {
+      if (v < 0 || v >= count) {
+        throw SettingsError(name + ": a triangle of its mesh names vertex " + std::to_string(v) + ", but there are " +
+                            std::to_string(count) + " vertices");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void check_setup(const SimulationSetup& setup) {
+  check_settings(setup.settings);
+  if (setup.bodies.empty() && setup.emitters.empty()) {
+    throw SettingsError("nothing to simulate: give at least one fluid body or emitter");
+  }
+  for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
+    check_mesh(setup.bodies[b].mesh, "fluid body " + std::to_string(b + 1));
+  }
+  for (std::size_t b = 0; b < setup.boundaries.size(); ++b) {
+    const std::string name = "boundary " + std::to_string(b + 1);
+    check_mesh(setup.boundaries[b].mesh, name);
+    if (setup.boundaries[b].mesh.triangles.empty()) throw SettingsError(name + ": its mesh has no triangles");
+    if (!(setup.boundaries[b].slip >= 0 && setup.boundaries[b].slip <= 1)) {
+      throw SettingsError(name + ": slip = " + number(setup.boundaries[b].slip) +
+                          ": expected 0 (no-slip) to 1 (free slip)");
+    }
+  }
+}
+
+SolverSettings with_automatic_values(const SimulationSetup& setup, const Box& fluid_box, double fluid_speed) {
+  SolverSettings s = setup.settings;
+  if (s.skin == 0) s.skin = recommended_skin;
+  const double g = s.gravity.norm();
+  if (s.max_speed == 0) {
+    const Vec3 down = g > 0 ? Vec3(s.gravity / g) : Vec3::Zero();
+    // Depth along gravity of the highest and the lowest corner of a box, and of points.
+    double top = 1e300, fluid_bottom = -1e300, wall_bottom = -1e300, speed = fluid_speed;
+    if (!setup.bodies.empty()) {
+      for (int k = 0; k < 8; ++k) {
+        const Vec3 corner((k & 1 ? fluid_box.max : fluid_box.min).x(), (k & 2 ? fluid_box.max : fluid_box.min).y(),
+                          (k & 4 ? fluid_box.max : fluid_box.min).z());
+        top = std::min(top, corner.dot(down));
+        fluid_bottom = std::max(fluid_bottom, corner.dot(down));
+      }
+    }
+    for (const Emitter& e : setup.emitters) {
+      top = std::min(top, e.center.dot(down));
+      fluid_bottom = std::max(fluid_bottom, e.center.dot(down));
+      speed = std::max(speed, e.speed);
+    }
+    for (const Boundary& b : setup.boundaries) {
+      for (const Vec3& p : b.mesh.positions) wall_bottom = std::max(wall_bottom, p.dot(down));
+    }
+    const double bottom = setup.boundaries.empty() ? fluid_bottom : std::max(wall_bottom, fluid_bottom);
+    s.max_speed = std::sqrt(speed * speed + 2 * g * std::max(0.0, bottom - top));
+    // Fluid at rest without gravity: any speed of sound will do.
+    if (s.max_speed == 0) s.max_speed = 50 * s.spacing;
+  }
+  if (s.speed_of_sound == 0) s.speed_of_sound = 10 * s.max_speed;
+  return s;
+}
+
+}  // namespace flowskin::sph

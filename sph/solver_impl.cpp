@@ -1,0 +1,401 @@
+#include "sph/solver_impl.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "sph/boundary_sampling.h"
+#include "sph/fluid_bodies.h"
+#include "sph/setup_checks.h"
+
+namespace flowskin::sph {
+
+namespace {
+
+constexpr int builds_per_sort = 4;
+constexpr double cluster_extent = 3.0;        // in spacings
+constexpr float greatest_compression = 1.0F;  // over twice the rest density nothing is believable
+constexpr float least_compression = -0.99F;
+
+Box bounding_box(const std::vector<FluidPoint>& points) {
+  Box box;
+  if (!points.empty()) box = {points[0].position, points[0].position};
+  for (const FluidPoint& p : points) {
+    box.min = box.min.cwiseMin(p.position);
+    box.max = box.max.cwiseMax(p.position);
+  }
+  return box;
+}
+
+// Middle of everything, so that the float coordinates are small.
+Vec3 middle(const std::vector<FluidPoint>& points, const std::vector<Vec3>& walls,
+            const std::vector<Emitter>& emitters) {
+  Vec3 low = Vec3::Constant(1e300), high = -low;
+  const auto include = [&](const Vec3& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  };
+  for (const FluidPoint& p : points) include(p.position);
+  for (const Vec3& p : walls) include(p);
+  for (const Emitter& e : emitters) include(e.center);
+  return 0.5 * (low + high);
+}
+
+std::string number(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr};
+}
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(omp_get_wtime()) {}
+  ~Stopwatch() { seconds_ += omp_get_wtime() - start_; }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  double start_;
+};
+
+// Settings with the automatic values, for members that are initialised from them.
+SolverSettings complete_settings(const SimulationSetup& setup, const std::vector<FluidPoint>& points) {
+  double speed = 0;
+  for (const FluidPoint& p : points) speed = std::max(speed, p.velocity.norm());
+  return with_automatic_values(setup, bounding_box(points), speed);
+}
+
+}  // namespace
+
+SolverImpl::SolverImpl(SimulationSetup setup) : settings_((check_setup(setup), setup.settings)) {
+  wall_kernel_ = make_wall_kernel(settings_);
+  boundary_ = sample_boundaries(setup.boundaries, settings_, wall_kernel_);
+  const std::vector<FluidPoint> points = fill_bodies(setup.bodies, settings_.spacing, boundary_.positions);
+  settings_ = complete_settings(setup, points);
+  coefficients_ = PairCoefficients(settings_, wall_kernel_);
+  mass_ = settings_.rest_density * std::pow(settings_.spacing, 3);
+  smoothing_length_ = 0.5 * settings_.support_radius * settings_.spacing;
+  origin_ = middle(points, boundary_.positions, setup.emitters);
+  place_at_origin(boundary_, origin_, wall_kernel_);
+  for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
+    emitters_.emplace_back(setup.emitters[e], settings_.spacing, "emitter " + std::to_string(e + 1));
+  }
+
+  for (const FluidPoint& p : points) {
+    particles_.append(next_id_++, p.position, p.velocity, p.position, settings_.xsph > 0);
+  }
+  pour_emitters();
+  for (std::size_t i = 0; i < particles_.size(); ++i) fill_pack(i, 0);
+  rebuild_lists();
+  evaluate_forces();
+  finish_step(0);
+}
+
+void SolverImpl::advance_to(double time) {
+  while (time_ < time) {
+    const double left = time - time_;
+    const double longest = choose_step(left).step;
+    // The last two steps share what is left, so that none is tiny.
+    if (longest >= left) {
+      step(left);
+      time_ = time;
+    } else {
+      step(longest >= 0.5 * left ? 0.5 * left : left);
+    }
+  }
+  if (some_outside_) {
+    rebuild_lists();
+    evaluate_forces();
+  }
+}
+
+double SolverImpl::step(double limit) {
+  statistics_.last_step = choose_step(limit);
+  const double dt = statistics_.last_step.step;
+  kick_and_drift(dt);
+  time_ += dt;
+  pour_emitters();
+  if (lists_outdated()) rebuild_lists();
+  evaluate_forces();
+  finish_step(dt);
+  ++statistics_.steps;
+  const std::string& by = statistics_.last_step.limited_by;
+  if (by == "acoustic") ++statistics_.steps_limited_by_acoustic;
+  if (by == "viscous") ++statistics_.steps_limited_by_viscous;
+  if (by == "force") ++statistics_.steps_limited_by_force;
+  return dt;
+}
+
+TimeStepReport SolverImpl::choose_step(double limit) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double h = smoothing_length_;
+  TimeStepReport report;
+  report.acoustic = settings_.acoustic_cfl * h / (settings_.speed_of_sound + greatest_speed_);
+  report.viscous = settings_.viscosity > 0 ? settings_.viscous_cfl * h * h / settings_.viscosity : infinity;
+  report.force = greatest_acceleration_ > 0 ? settings_.force_cfl * std::sqrt(h / greatest_acceleration_) : infinity;
+  report.step = infinity;
+  const auto apply = [&](double value, const char* name) {
+    if (value < report.step) {
+      report.step = value;
+      report.limited_by = name;
+    }
+  };
+  apply(report.acoustic, "acoustic");
+  apply(report.viscous, "viscous");
+  apply(report.force, "force");
+  apply(settings_.max_time_step, "setting");
+  apply(limit, "output");
+  return report;
+}
+
+const JetEmitter* SolverImpl::nozzle_around(const Vec3& p) const {
+  for (const JetEmitter& emitter : emitters_) {
+    if (emitter.in_nozzle(p, time_)) return &emitter;
+  }
+  return nullptr;
+}
+
+void SolverImpl::fill_pack(std::size_t i, double dt) {
+  const Eigen::Vector3f x = (particles_.positions[i] - origin_).cast<float>();
+  const Eigen::Vector3f v = particles_.velocities[i].cast<float>();
+  // The compression that the last rate predicts; finish_step() replaces the prediction.
+  const float compression = particles_.compressions[i] + static_cast<float>(dt) * particles_.rates[i].compression_rate;
+  particles_.packs[i] = {x.x(), x.y(), x.z(),       v.x(),
+                         v.y(), v.z(), compression, coefficients_.pack_pressure(compression)};
+}
+
+void SolverImpl::drift_particle(std::size_t i, double dt, const std::vector<std::uint32_t>& triangles,
+                                std::uint64_t& crossings) {
+  const ParticleRates& rate = particles_.rates[i];
+  Vec3& velocity = particles_.velocities[i];
+  velocity += 0.5 * dt * (Vec3(rate.ax, rate.ay, rate.az) + settings_.gravity);
+  if (const JetEmitter* emitter = nozzle_around(particles_.positions[i])) velocity = emitter->velocity();
+  Vec3 motion = dt * velocity;
+  if (!particles_.shifts.empty()) motion += dt * particles_.shifts[i].cast<double>();
+
+  const Vec3 target = particles_.positions[i] + motion;
+  if (!triangles.empty() &&
+      particles_.wall_distances[i] < coverage_radius * wall_kernel_.sample_spacing + motion.norm()) {
+    const WallGuard::Crossing crossing = boundary_.guard.check(particles_.positions[i], target, triangles);
+    if (crossing.crossed) {
+      velocity -= std::min(0.0, velocity.dot(crossing.normal)) * crossing.normal;
+      ++crossings;
+      return;
+    }
+  }
+  particles_.positions[i] = target;
+}
+
+void SolverImpl::kick_and_drift(double dt) {
+  const Stopwatch watch(statistics_.seconds_integration);
+  std::uint64_t crossings = 0;
+  bool outside = false;
+#pragma omp parallel for schedule(static) reduction(+ : crossings) reduction(|| : outside)
+  for (std::size_t c = 0; c < clusters_.size(); ++c) {
+    const PointCluster& cluster = clusters_[c];
+    for (std::size_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
+      drift_particle(i, dt, wall_triangles_[c], crossings);
+      fill_pack(i, dt);
+      outside = outside || outside_domain(particles_.positions[i]);
+    }
+  }
+  statistics_.wall_crossings += crossings;
+  some_outside_ = outside;
+}
+
+void SolverImpl::pour_emitters() {
+  std::vector<JetEmitter::Particle> poured;
+  for (JetEmitter& emitter : emitters_) {
+    if (emitter.next_time() > time_) continue;
+    poured.clear();
+    emitter.pour(time_, poured);
+    for (const JetEmitter::Particle& p : poured) {
+      particles_.append(next_id_++, p.position, emitter.velocity(), p.rest_position, settings_.xsph > 0);
+      fill_pack(particles_.size() - 1, 0);
+    }
+    statistics_.emitted += poured.size();
+    particles_changed_ = true;
+  }
+}
+
+bool SolverImpl::outside_domain(const Vec3& p) const {
+  const Box& box = settings_.domain;
+  if (box.min == box.max) return false;
+  return (p.array() < box.min.array()).any() || (p.array() > box.max.array()).any();
+}
+
+void SolverImpl::remove_outside() {
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (!outside_domain(particles_.positions[i])) kept.push_back(static_cast<std::uint32_t>(i));
+  }
+  statistics_.left_domain += particles_.size() - kept.size();
+  if (kept.size() < particles_.size()) particles_.rearrange(kept);
+  some_outside_ = false;
+}
+
+bool SolverImpl::lists_outdated() const {
+  if (particles_changed_) return true;
+  // Fluid pairs see only motion relative to each other, so a common shift is taken off; walls rest, so a particle may
+  // come nearer to them by the whole skin.
+  const float skin = static_cast<float>(settings_.skin * settings_.spacing);
+  Eigen::Vector3f low = Eigen::Vector3f::Constant(1e30F), high = -low;
+  const auto moved = [&](std::size_t i) {
+    const FluidPack& p = particles_.packs[i];
+    return Eigen::Vector3f(Eigen::Vector3f(p.x, p.y, p.z) - build_positions_[i]);
+  };
+#pragma omp parallel
+  {
+    Eigen::Vector3f my_low = low, my_high = high;
+#pragma omp for schedule(static)
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      const Eigen::Vector3f d = moved(i);
+      my_low = my_low.cwiseMin(d);
+      my_high = my_high.cwiseMax(d);
+    }
+#pragma omp critical
+    {
+      low = low.cwiseMin(my_low);
+      high = high.cwiseMax(my_high);
+    }
+  }
+  const Eigen::Vector3f farthest = low.cwiseAbs().cwiseMax(high.cwiseAbs());
+  const bool walls_safe = boundary_.positions.empty() || farthest.norm() < skin;
+  if (walls_safe && (high - low).norm() < skin) return false;
+  // The box of displacements is too coarse to tell: look at each.
+  const Eigen::Vector3f common = 0.5F * (low + high);
+  float relative2 = 0, absolute2 = 0;
+#pragma omp parallel for schedule(static) reduction(max : relative2, absolute2)
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const Eigen::Vector3f d = moved(i);
+    relative2 = std::max(relative2, (d - common).squaredNorm());
+    absolute2 = std::max(absolute2, d.squaredNorm());
+  }
+  if (!boundary_.positions.empty() && absolute2 >= skin * skin) return true;
+  return relative2 >= 0.25F * skin * skin;
+}
+
+void SolverImpl::rebuild_lists() {
+  const Stopwatch watch(statistics_.seconds_neighbors);
+  if (some_outside_) remove_outside();
+  const auto refresh_positions = [&] {
+    build_positions_.resize(particles_.size());
+#pragma omp parallel for schedule(static)
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      const FluidPack& p = particles_.packs[i];
+      build_positions_[i] = Eigen::Vector3f(p.x, p.y, p.z);
+    }
+  };
+  refresh_positions();
+  if (particles_changed_ || ++builds_since_sort_ >= builds_per_sort) {
+    curve_.compute(build_positions_, static_cast<float>(settings_.spacing));
+    particles_.rearrange(curve_.order());
+    refresh_positions();
+    builds_since_sort_ = 0;
+  }
+  particles_changed_ = false;
+  clusters_.assign(build_positions_, static_cast<float>(cluster_extent * settings_.spacing));
+  const auto radius = static_cast<float>((settings_.support_radius + settings_.skin) * settings_.spacing);
+  fluid_lists_.build(clusters_, clusters_, radius);
+  const auto wall_reach = static_cast<float>(wall_kernel_.support + settings_.skin * settings_.spacing);
+  wall_lists_.build(clusters_, boundary_.clusters, wall_reach);
+  collect_wall_triangles();
+  ++statistics_.list_rebuilds;
+}
+
+void SolverImpl::collect_wall_triangles() {
+  wall_triangles_.resize(clusters_.size());
+  // Up to the next rebuild no particle moves farther than the skin.
+  const Vec3 margin = Vec3::Constant(1.1 * settings_.skin * settings_.spacing + 0.5 * settings_.spacing);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (std::size_t c = 0; c < clusters_.size(); ++c) {
+    wall_triangles_[c].clear();
+    if (wall_lists_.of_cluster(c).empty()) continue;
+    const Vec3 low = origin_ + clusters_[c].box_min.cast<double>(),
+               high = origin_ + clusters_[c].box_max.cast<double>();
+    boundary_.guard.query(low - margin, high + margin, wall_triangles_[c]);
+  }
+}
+
+void SolverImpl::evaluate_forces() {
+  const Stopwatch watch(statistics_.seconds_forces);
+  const PairData data{particles_.packs,          &clusters_,       &fluid_lists_,
+                      boundary_.packs,           &wall_lists_,     particles_.rates,
+                      particles_.wall_distances, particles_.shifts};
+  if (settings_.density_method == DensityMethod::summation) sum_densities(coefficients_, settings_, data);
+  compute_forces(coefficients_, settings_, data);
+}
+
+void SolverImpl::finish_step(double dt) {
+  const Stopwatch watch(statistics_.seconds_integration);
+  double speed2 = 0, acceleration2 = 0;
+  const double speed_limit2 = settings_.speed_of_sound * settings_.speed_of_sound;
+  std::size_t worst = particles_.size();  // a particle beyond belief: the one with the lowest place in the arrays
+#pragma omp parallel for schedule(static) reduction(max : speed2, acceleration2) reduction(min : worst)
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const ParticleRates& rate = particles_.rates[i];
+    const Vec3 acceleration = Vec3(rate.ax, rate.ay, rate.az) + settings_.gravity;
+    const double a2 = acceleration.squaredNorm();
+    // Not a number: what was before stays readable.
+    if (!std::isfinite(a2 + rate.compression_rate)) {
+      worst = std::min(worst, i);
+      continue;
+    }
+    Vec3& velocity = particles_.velocities[i];
+    velocity += 0.5 * dt * acceleration;
+    if (const JetEmitter* emitter = nozzle_around(particles_.positions[i])) velocity = emitter->velocity();
+    float& compression = particles_.compressions[i];
+    compression = settings_.density_method == DensityMethod::summation
+                      ? particles_.packs[i].compression
+                      : std::max(compression + static_cast<float>(dt) * rate.compression_rate, least_compression);
+    const double v2 = velocity.squaredNorm();
+    speed2 = std::max(speed2, v2);
+    acceleration2 = std::max(acceleration2, a2);
+    if (v2 > speed_limit2 || compression > greatest_compression) worst = std::min(worst, i);
+  }
+  greatest_speed_ = std::sqrt(speed2);
+  greatest_acceleration_ = std::sqrt(acceleration2);
+  if (worst < particles_.size()) throw_blow_up(worst);
+}
+
+void SolverImpl::throw_blow_up(std::size_t i) const {
+  const ParticleRates& rate = particles_.rates[i];
+  const Vec3& x = particles_.positions[i];
+  std::string message = "the simulation blew up at t = " + number(time_) + " s: particle " +
+                        std::to_string(particles_.ids[i]) + " at (" + number(x.x()) + ", " + number(x.y()) + ", " +
+                        number(x.z()) + ") m ";
+  const double speed = particles_.velocities[i].norm();
+  if (!std::isfinite(rate.ax + rate.ay + rate.az + rate.compression_rate)) {
+    message +=
+        "has a force that is not a number; likely particles at nearly the same place or a time step that is too "
+        "long: check bodies that overlap, or lower acoustic_cfl and viscous_cfl";
+  } else if (speed > settings_.speed_of_sound) {
+    message += "moves at " + number(speed) + " m/s, faster than the speed of sound of the set-up, " +
+               number(settings_.speed_of_sound) +
+               " m/s; likely the flow is faster than max_speed = " + number(settings_.max_speed) +
+               " m/s allows for, or the time step is too long: raise max_speed, or lower "
+               "acoustic_cfl and viscous_cfl";
+  } else {
+    message += "has " + number(1 + double(particles_.compressions[i])) +
+               " times the rest density; likely the fluid is pressed into a space that is too small, or hits a wall "
+               "faster than max_speed = " +
+               number(settings_.max_speed) +
+               " m/s allows for: raise max_speed or lower "
+               "acoustic_cfl";
+  }
+  throw BlowUpError(message);
+}
+
+std::size_t SolverImpl::memory_bytes() const {
+  std::size_t bytes = const_cast<ParticleArrays&>(particles_).memory_bytes() + boundary_.memory_bytes() +
+                      curve_.memory_bytes() + build_positions_.capacity() * sizeof(build_positions_[0]) +
+                      clusters_.memory_bytes() + fluid_lists_.memory_bytes() + wall_lists_.memory_bytes() +
+                      wall_triangles_.capacity() * sizeof(wall_triangles_[0]);
+  for (const auto& triangles : wall_triangles_) bytes += triangles.capacity() * sizeof(std::uint32_t);
+  return bytes;
+}
+
+}  // namespace flowskin::sph

@@ -1,0 +1,77 @@
+// What is behind sph::Solver: one step is step(), the rest are its parts in order.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sph/boundary_particles.h"
+#include "sph/hilbert_order.h"
+#include "sph/jet_emitter.h"
+#include "sph/neighbor_lists.h"
+#include "sph/pair_forces.h"
+#include "sph/particle_arrays.h"
+#include "sph/solver.h"
+
+namespace flowskin::sph {
+
+class SolverImpl {
+ public:
+  explicit SolverImpl(SimulationSetup setup);
+
+  void advance_to(double time);
+  double step(double limit);
+
+  double time() const { return time_; }
+  const ParticleArrays& particles() const { return particles_; }
+  const BoundaryParticles& boundary() const { return boundary_; }
+  const SolverSettings& settings() const { return settings_; }
+  const SolverStatistics& statistics() const { return statistics_; }
+  double particle_mass() const { return mass_; }
+  std::size_t memory_bytes() const;
+
+ private:
+  TimeStepReport choose_step(double limit) const;
+  /// First half of the kick, then the drift, with the wall guard; fills the packs with the state that forces are needed
+  /// of.
+  void kick_and_drift(double dt);
+  void drift_particle(std::size_t i, double dt, const std::vector<std::uint32_t>& triangles, std::uint64_t& crossings);
+  void fill_pack(std::size_t i, double dt);
+  void pour_emitters();
+  bool outside_domain(const Vec3& p) const;
+  void remove_outside();
+  /// Whether some pair may have come into reach that is not in the lists.
+  bool lists_outdated() const;
+  void rebuild_lists();
+  void collect_wall_triangles();
+  void evaluate_forces();
+  /// Second half of the kick, the compression, and the limits of what is believable.
+  void finish_step(double dt);
+  [[noreturn]] void throw_blow_up(std::size_t particle) const;
+  const JetEmitter* nozzle_around(const Vec3& p) const;
+
+  SolverSettings settings_;
+  double mass_ = 0, smoothing_length_ = 0;
+  double time_ = 0;
+  Vec3 origin_ = Vec3::Zero();  // of the float coordinates
+  WallKernel wall_kernel_;
+  PairCoefficients coefficients_;
+  std::vector<JetEmitter> emitters_;
+  BoundaryParticles boundary_;
+  ParticleArrays particles_;
+  std::uint64_t next_id_ = 0;
+
+  // Neighbour search. Positions at the last build tell how far particles have moved since.
+  HilbertOrder curve_;
+  std::vector<Eigen::Vector3f> build_positions_;
+  PointClusters clusters_;
+  NeighborLists fluid_lists_, wall_lists_;
+  std::vector<std::vector<std::uint32_t>> wall_triangles_;  // one list a cluster; empty away from walls
+  bool particles_changed_ = true;                           // added or removed since the last build
+  int builds_since_sort_ = 0;
+
+  double greatest_speed_ = 0, greatest_acceleration_ = 0;
+  bool some_outside_ = false;
+  SolverStatistics statistics_;
+};
+
+}  // namespace flowskin::sph

@@ -1,0 +1,108 @@
+#include "sph/wall_guard.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace flowskin::sph {
+
+namespace {
+
+std::array<std::int64_t, 3> cell_of(const Vec3& p, const Vec3& origin, double cell_size) {
+  const Vec3 q = (p - origin) / cell_size;
+  return {static_cast<std::int64_t>(std::floor(q.x())), static_cast<std::int64_t>(std::floor(q.y())),
+          static_cast<std::int64_t>(std::floor(q.z()))};
+}
+
+}  // namespace
+
+WallGuard::WallGuard(const std::vector<const TriangleMesh*>& meshes, double cell_size) : cell_size_(cell_size) {
+  Vec3 low = Vec3::Constant(1e300);
+  for (const TriangleMesh* mesh : meshes) {
+    for (const auto& t : mesh->triangles) {
+      const Vec3 &a = mesh->positions[t[0]], &b = mesh->positions[t[1]], &c = mesh->positions[t[2]];
+      const Vec3 normal = (b - a).cross(c - a);
+      low = low.cwiseMin(a).cwiseMin(b).cwiseMin(c);
+      if (normal.norm() > 0)
+        triangles_.push_back({a, b, c, normal.normalized()});  // without area: its edges belong to others
+    }
+  }
+  if (triangles_.empty()) return;
+  origin_ = low - Vec3::Constant(2 * cell_size);
+
+  // A triangle is entered in every cell of its box that its plane comes near.
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    const Triangle& tri = triangles_[t];
+    const auto first = cell_of(tri.a.cwiseMin(tri.b).cwiseMin(tri.c), origin_, cell_size_);
+    const auto last = cell_of(tri.a.cwiseMax(tri.b).cwiseMax(tri.c), origin_, cell_size_);
+    for (auto x = first[0]; x <= last[0]; ++x) {
+      for (auto y = first[1]; y <= last[1]; ++y) {
+        for (auto z = first[2]; z <= last[2]; ++z) {
+          const Vec3 center = origin_ + cell_size_ * Vec3(double(x) + 0.5, double(y) + 0.5, double(z) + 0.5);
+          if (std::abs(tri.normal.dot(center - tri.a)) <= 0.9 * cell_size_) entries_.push_back({cell_key(x, y, z), t});
+        }
+      }
+    }
+  }
+  std::sort(entries_.begin(), entries_.end(), [](const CellEntry& a, const CellEntry& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.triangle < b.triangle;
+  });
+}
+
+std::uint64_t WallGuard::cell_key(std::int64_t x, std::int64_t y, std::int64_t z) const {
+  constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
+  return (static_cast<std::uint64_t>(x) & mask) << 42 | (static_cast<std::uint64_t>(y) & mask) << 21 |
+         (static_cast<std::uint64_t>(z) & mask);
+}
+
+void WallGuard::query(const Vec3& box_min, const Vec3& box_max, std::vector<std::uint32_t>& found) const {
+  found.clear();
+  if (triangles_.empty()) return;
+  const auto first = cell_of(box_min, origin_, cell_size_), last = cell_of(box_max, origin_, cell_size_);
+  for (auto x = first[0]; x <= last[0]; ++x) {
+    for (auto y = first[1]; y <= last[1]; ++y) {
+      for (auto z = first[2]; z <= last[2]; ++z) {
+        const std::uint64_t key = cell_key(x, y, z);
+        auto entry = std::lower_bound(entries_.begin(), entries_.end(), key,
+                                      [](const CellEntry& e, std::uint64_t k) { return e.cell < k; });
+        for (; entry != entries_.end() && entry->cell == key; ++entry) found.push_back(entry->triangle);
+      }
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+}
+
+WallGuard::Crossing WallGuard::check(const Vec3& from, const Vec3& to,
+                                     const std::vector<std::uint32_t>& candidates) const {
+  const double hair = 1e-6 * cell_size_;
+  Crossing first;
+  double first_share = 2;
+  for (const std::uint32_t t : candidates) {
+    const Triangle& tri = triangles_[t];
+    const double from_height = tri.normal.dot(from - tri.a), to_height = tri.normal.dot(to - tri.a);
+    const bool opposite = (from_height > 0) != (to_height > 0);
+    const bool approaches = std::abs(to_height) < hair && std::abs(to_height) < std::abs(from_height);
+    if (!opposite && !approaches) continue;
+    const double share = opposite ? from_height / (from_height - to_height) : 1;
+    const Vec3 p = from + share * (to - from);
+    // Inside the triangle, its rim widened by a hair, so that nothing slips between two triangles that share an edge.
+    const double area = tri.normal.dot((tri.b - tri.a).cross(tri.c - tri.a));
+    const double wa = tri.normal.dot((tri.b - p).cross(tri.c - p)), wb = tri.normal.dot((tri.c - p).cross(tri.a - p));
+    const double rim_a = hair * (tri.c - tri.b).norm(), rim_b = hair * (tri.a - tri.c).norm(),
+                 rim_c = hair * (tri.b - tri.a).norm();
+    if (wa < -rim_a || wb < -rim_b || area - wa - wb < -rim_c) continue;
+    if (share < first_share) {
+      first_share = share;
+      first = {true, from_height > 0 ? tri.normal : Vec3(-tri.normal)};
+    }
+  }
+  return first;
+}
+
+std::size_t WallGuard::memory_bytes() const {
+  return triangles_.capacity() * sizeof(Triangle) + entries_.capacity() * sizeof(CellEntry);
+}
+
+}  // namespace flowskin::sph
