@@ -231,10 +231,10 @@ TEST(Velocity, RotationOfTwoParticlesAlongTheirMeridians) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 around = Vec3::UnitX().cross(points[i]).normalized();
     const Vec3 difference = found[i] - rotation()(points[i]);
-    errors.push_back((difference - around * around.dot(difference)).norm() / rotation()(points[i]).norm());
+    errors.push_back((difference - around * around.dot(difference)).norm());
   }
   EXPECT_LT(median(errors), 1e-3);
-  EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 1);
+  EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.8);  // the body's surface moves at up to 0.9
 }
 
 TEST(Velocity, RotationOfThreeParticles) {

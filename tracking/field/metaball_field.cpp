@@ -41,8 +41,8 @@ void check(const std::vector<Vec3>& positions, const std::vector<Vec3>& velociti
   check_finite(velocities, "velocity");
 }
 
-/// Where a thread keeps the numbers of the blocks near its point, so that queries do not allocate.
-std::vector<int>& block_scratch() {
+/// Where a thread keeps the numbers of the groups near its point, so that queries do not allocate.
+std::vector<int>& group_scratch() {
   thread_local std::vector<int> found;
   return found;
 }
@@ -68,23 +68,20 @@ struct MetaballField::Impl {
         velocities(std::move(particle_velocities)),
         blocks(positions, velocities, settings.radius) {}
 
-  /// Calls visit(group, ex, ey, ez, u, inside) for every four particles of which one or more are nearer than sigma.
+  /// Calls visit(group, ex, ey, ez, u, inside) for every four particles of which some may be nearer than sigma.
   template <class Visit>
   void for_each_group(const Vec3& x, const Visit& visit) const {
-    std::vector<int>& near = block_scratch();
-    blocks.near(x, settings.radius, near);
+    std::vector<int>& near = group_scratch();
+    const int count = blocks.near(x, settings.radius, near);
     const double per_radius = 1 / settings.radius;
-    for (const int index : near) {
-      const ParticleBlock& block = blocks.blocks()[index];
-      for (int g = block.first_group; g < block.last_group; ++g) {
-        const ParticleGroup& group = blocks.groups()[g];
-        const Lanes ex = (x.x() - group.x) * per_radius;
-        const Lanes ey = (x.y() - group.y) * per_radius;
-        const Lanes ez = (x.z() - group.z) * per_radius;
-        const Lanes u = 1 - (ex * ex + ey * ey + ez * ez);
-        const LaneMask inside = u > 0;
-        if (any_lane(inside)) visit(group, ex, ey, ez, u, inside);
-      }
+    for (int i = 0; i < count; ++i) {
+      const ParticleGroup& group = blocks.group(near[i]);
+      const Lanes ex = (x.x() - group.x) * per_radius;
+      const Lanes ey = (x.y() - group.y) * per_radius;
+      const Lanes ez = (x.z() - group.z) * per_radius;
+      const Lanes u = 1 - (ex * ex + ey * ey + ez * ez);
+      const LaneMask inside = u > 0;
+      visit(group, ex, ey, ez, u, inside);
     }
   }
 
@@ -138,7 +135,7 @@ Jet MetaballField::jet(const Vec3& x) const {
       sums.add(lanes.data(), count, moving);
       count = 0;
     }
-    NeighborLanes& next = lanes[count++];
+    NeighborLanes& next = lanes[count];
     next.ex = inside ? ex : zero;
     next.ey = inside ? ey : zero;
     next.ez = inside ? ez : zero;
@@ -146,7 +143,8 @@ Jet MetaballField::jet(const Vec3& x) const {
     next.vx = group.vx;
     next.vy = group.vy;
     next.vz = group.vz;
-    neighbors -= inside;  // a lane of a mask is 0 or -1
+    neighbors -= inside;                          // a lane of a mask is 0 or -1
+    count += static_cast<int>(any_lane(inside));  // without a branch, which could not be foretold
   });
   sums.add(lanes.data(), count, moving);
   Jet jet = sums.jet(impl_->settings);
@@ -161,17 +159,12 @@ const std::vector<Vec3>& MetaballField::velocities() const { return impl_->veloc
 void MetaballField::neighbors(const Vec3& x, double radius, std::vector<int>& found) const {
   found.clear();
   if (!(radius > 0)) return;
-  std::vector<int>& near = block_scratch();
-  impl_->blocks.near(x, radius, near);
-  for (const int index : near) {
-    const ParticleBlock& block = impl_->blocks.blocks()[index];
-    for (int g = block.first_group; g < block.last_group; ++g) {
-      for (int lane = 0; lane < lane_count; ++lane) {
-        const int particle = impl_->blocks.particle(g, lane);
-        if (particle >= 0 && (impl_->positions[particle] - x).squaredNorm() < radius * radius) {
-          found.push_back(particle);
-        }
-      }
+  std::vector<int>& near = group_scratch();
+  const int count = impl_->blocks.near(x, radius, near);
+  for (int i = 0; i < count; ++i) {
+    for (int lane = 0; lane < lane_count; ++lane) {
+      const int particle = impl_->blocks.particle(near[i], lane);
+      if (particle >= 0 && (impl_->positions[particle] - x).squaredNorm() < radius * radius) found.push_back(particle);
     }
   }
   std::sort(found.begin(), found.end());

@@ -11,8 +11,9 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr int largest_count = 16;        // particles in a block
-constexpr double largest_size = 0.5;     // half the diagonal of a block's box, in reaches
+// Chosen with tests/benchmarks/tracking_benchmark.cpp.
+constexpr int largest_count = 64;        // particles in a block
+constexpr double largest_size = 1.2;     // half the diagonal of a block's box, in reaches
 constexpr double cell_in_reaches = 0.2;  // finer cells would not change the order by much
 constexpr int tree_leaf_size = 8;
 
@@ -64,6 +65,7 @@ ParticleBlocks::ParticleBlocks(const std::vector<Vec3>& positions, const std::ve
   const std::vector<int> order = hilbert_order(positions, cell_in_reaches * reach);
   const double diagonal_limit = square(2 * largest_size * reach);
   const int count = static_cast<int>(order.size());
+  std::vector<Vec3> centres;
   for (int begin = 0, end = 0; begin < count; begin = end) {
     Vec3 low = positions[order[begin]];
     Vec3 high = low;
@@ -75,14 +77,10 @@ ParticleBlocks::ParticleBlocks(const std::vector<Vec3>& positions, const std::ve
       low = new_low;
       high = new_high;
     }
-    add_block(positions, velocities, &order[begin], &order[begin] + (end - begin));
-    blocks_.back().low = low;
-    blocks_.back().high = high;
+    add_block(positions, velocities, order.data() + begin, order.data() + end);
+    centres.emplace_back(0.5 * (low + high));
     largest_block_ = std::max(largest_block_, 0.5 * (high - low).norm());
   }
-  std::vector<Vec3> centres;
-  centres.reserve(blocks_.size());
-  for (const ParticleBlock& block : blocks_) centres.emplace_back(0.5 * (block.low + block.high));
   if (!centres.empty()) tree_ = std::make_unique<Tree>(std::move(centres));
 }
 
@@ -90,41 +88,78 @@ ParticleBlocks::~ParticleBlocks() = default;
 
 void ParticleBlocks::add_block(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities,
                                const int* begin, const int* end) {
-  const int first_group = static_cast<int>(groups_.size());
-  for (const int* at = begin; at < end; at += lane_count) {
-    constexpr double nowhere = std::numeric_limits<double>::infinity();
-    ParticleGroup group{};
-    for (int lane = 0; lane < lane_count; ++lane) {
-      const bool filled = at + lane < end;
-      const int particle = filled ? at[lane] : -1;
-      particles_.push_back(particle);
-      const Vec3 position = filled ? positions[particle] : Vec3::Constant(nowhere);
-      const Vec3 velocity = filled && !velocities.empty() ? velocities[particle] : Vec3(Vec3::Zero());
-      group.x[lane] = position.x();
-      group.y[lane] = position.y();
-      group.z[lane] = position.z();
-      group.vx[lane] = velocity.x();
-      group.vy[lane] = velocity.y();
-      group.vz[lane] = velocity.z();
+  constexpr double nowhere = std::numeric_limits<double>::infinity();
+  const Lanes far_away = {nowhere, nowhere, nowhere, nowhere};
+  const int first_boxes = static_cast<int>(boxes_.size());
+  for (const int* at = begin; at < end;) {
+    GroupBoxes boxes{far_away, far_away, far_away, far_away, far_away, far_away};
+    for (int box = 0; box < lane_count; ++box) {
+      ParticleGroup group{far_away, far_away, far_away, Lanes{}, Lanes{}, Lanes{}};
+      Vec3 low = Vec3::Constant(nowhere);
+      Vec3 high = Vec3::Constant(at < end ? -nowhere : nowhere);
+      for (int lane = 0; lane < lane_count; ++lane) {
+        const int particle = at < end ? *at++ : -1;
+        particles_.push_back(particle);
+        if (particle < 0) continue;
+        const Vec3& position = positions[particle];
+        low = low.cwiseMin(position);
+        high = high.cwiseMax(position);
+        group.x[lane] = position.x();
+        group.y[lane] = position.y();
+        group.z[lane] = position.z();
+        if (velocities.empty()) continue;
+        group.vx[lane] = velocities[particle].x();
+        group.vy[lane] = velocities[particle].y();
+        group.vz[lane] = velocities[particle].z();
+      }
+      groups_.push_back(group);
+      boxes.low_x[box] = low.x();
+      boxes.low_y[box] = low.y();
+      boxes.low_z[box] = low.z();
+      boxes.high_x[box] = high.x();
+      boxes.high_y[box] = high.y();
+      boxes.high_z[box] = high.z();
     }
-    groups_.push_back(group);
+    boxes_.push_back(boxes);
   }
-  blocks_.push_back({Vec3::Zero(), Vec3::Zero(), first_group, static_cast<int>(groups_.size())});
+  blocks_.push_back({first_boxes, static_cast<int>(boxes_.size())});
 }
 
-void ParticleBlocks::near(const Vec3& x, double radius, std::vector<int>& found) const {
-  found.clear();
-  if (!tree_ || !x.allFinite()) return;
+int ParticleBlocks::near(const Vec3& x, double radius, std::vector<int>& found) const {
+  if (!tree_ || !x.allFinite()) return 0;
   // A particle on the rim of the reach must not be lost to rounding in the tree: look a little further.
   constexpr double margin = 1 + 1e-9;
-  BlocksWithin within(square((radius + largest_block_) * margin), found);
+  thread_local std::vector<int> near_blocks;
+  near_blocks.clear();
+  BlocksWithin within(square((radius + largest_block_) * margin), near_blocks);
   tree_->index.findNeighbors(within, x.data(), {});
+  std::sort(near_blocks.begin(), near_blocks.end());
+
+  const std::size_t most = near_blocks.size() * largest_count / lane_count;
+  if (found.size() < most) found.resize(most);
   const double limit = square(radius * margin);
-  std::erase_if(found, [&](int index) {
-    const ParticleBlock& block = blocks_[index];
-    return (block.low - x).cwiseMax(x - block.high).cwiseMax(0.0).squaredNorm() > limit;
-  });
-  std::sort(found.begin(), found.end());
+  const auto beyond = [](const Lanes& low, const Lanes& high, double at) {  // of an interval, 0 inside
+    const Lanes below = low - at;
+    const Lanes above = at - high;
+    const Lanes outside = below > above ? below : above;
+    return outside > 0 ? outside : Lanes{};
+  };
+  int count = 0;
+  for (const int index : near_blocks) {
+    const Block& block = blocks_[index];
+    for (int b = block.first_boxes; b < block.last_boxes; ++b) {
+      const GroupBoxes& boxes = boxes_[b];
+      const Lanes dx = beyond(boxes.low_x, boxes.high_x, x.x());
+      const Lanes dy = beyond(boxes.low_y, boxes.high_y, x.y());
+      const Lanes dz = beyond(boxes.low_z, boxes.high_z, x.z());
+      const LaneMask reached = dx * dx + dy * dy + dz * dz <= limit;
+      for (int lane = 0; lane < lane_count; ++lane) {  // without branches: which ones are near cannot be foretold
+        found[count] = b * lane_count + lane;
+        count -= static_cast<int>(reached[lane]);
+      }
+    }
+  }
+  return count;
 }
 
 }  // namespace flowskin::tracking

@@ -1,5 +1,4 @@
-// The field's neighbour lookup: particles in small blocks, a nanoflann k-d tree over the blocks. Internal to
-// tracking/field.
+// The field's neighbour lookup: particles in blocks, a nanoflann k-d tree over the blocks. Internal to tracking/field.
 #pragma once
 
 #include <memory>
@@ -16,37 +15,43 @@ struct ParticleGroup {
   Lanes vx, vy, vz;  ///< m/s
 };
 
-/// A few particles that follow each other along the Hilbert curve, with their bounding box.
-struct ParticleBlock {
-  Vec3 low, high;   ///< m
-  int first_group;  ///< Groups [first_group, last_group) hold the block's particles.
-  int last_group;
+/// The bounding boxes of four groups side by side (m). Lanes without a group are boxes infinitely far away.
+struct GroupBoxes {
+  Lanes low_x, low_y, low_z, high_x, high_y, high_z;
 };
 
-/// One k-d tree query per point of evaluation would cost more than the field itself. So the tree holds blocks of up to
-/// 16 particles: a query meets few of them, and their particles are tested four at a time by the caller.
+/// One k-d tree query over particles for each point of evaluation would cost more than the field itself. So particles
+/// are sorted along the Hilbert curve and cut into blocks, and the tree holds the blocks: a query meets few of them,
+/// and what is in them is tested four at a time: first the boxes of groups of four particles, then (by the caller)
+/// those.
 class ParticleBlocks {
  public:
   /// `reach` is the radius of most queries (m); it decides how large blocks may be. `velocities` may be empty.
   ParticleBlocks(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, double reach);
   ~ParticleBlocks();
 
-  const std::vector<ParticleBlock>& blocks() const { return blocks_; }
-  const std::vector<ParticleGroup>& groups() const { return groups_; }
-  /// Index of the particle in a lane, -1 where there is none.
+  const ParticleGroup& group(int index) const { return groups_[index]; }
+  /// Index of the particle in a lane of a group, -1 where there is none.
   int particle(int group, int lane) const { return particles_[group * lane_count + lane]; }
-  /// Blocks whose bounding box is nearer than `radius` to x (m), ascending. Clears `found` first.
-  void near(const Vec3& x, double radius, std::vector<int>& found) const;
+  /// Indices of the groups whose bounding box is not farther than `radius` from x (m), ascending. The result lives in
+  /// `found`, which grows where it is too small and never shrinks.
+  /// @return How many there are, at the beginning of `found`.
+  int near(const Vec3& x, double radius, std::vector<int>& found) const;
 
  private:
   struct Tree;
+  struct Block {
+    int first_boxes;  ///< Boxes [first_boxes, last_boxes) are those of its groups.
+    int last_boxes;
+  };
   void add_block(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, const int* begin,
                  const int* end);
 
-  std::vector<ParticleBlock> blocks_;
-  std::vector<ParticleGroup> groups_;
-  std::vector<int> particles_;
-  double largest_block_ = 0;  // half the diagonal of the largest bounding box (m)
+  std::vector<Block> blocks_;
+  std::vector<GroupBoxes> boxes_;
+  std::vector<ParticleGroup> groups_;  // four for each element of boxes_
+  std::vector<int> particles_;         // four for each element of groups_
+  double largest_block_ = 0;           // half the diagonal of the largest block's box (m)
   std::unique_ptr<Tree> tree_;
 };
 

@@ -1,0 +1,127 @@
+// Cost of the surface velocity per vertex: the lookup, the field, its jet, each method. One thread unless
+// OMP_NUM_THREADS says otherwise. The time of an iteration is that of all points; us_per_point is what counts,
+// neighbors says at which number of neighbours.
+#include <benchmark/benchmark.h>
+#include <omp.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/tracking/field_test_bodies.h"
+#include "tracking/velocity/velocity_method.h"
+
+namespace flowskin::tracking {
+namespace {
+
+/// A ball of particles on a jittered lattice of spacing 1, and points on its surface in an order as a mesh has it.
+struct Body {
+  explicit Body(double radius_in_spacings)
+      : particles(test::lattice(1, 19, 0.2, 41, [](const Vec3& x) { return x.norm() < 18.5; })),
+        velocities(test::velocities_of(particles, [](const Vec3& x) { return Vec3(x.y(), 0.1 * x.x(), 0.3 * x.z()); })),
+        field(particles, velocities, default_field_settings(1, radius_in_spacings)) {
+    constexpr int rings = 100;
+    for (int ring = 1; ring < rings; ++ring) {
+      const double polar = M_PI * ring / rings;
+      const int count = static_cast<int>(2 * rings * std::sin(polar));
+      for (int i = 0; i < count; ++i) {
+        const double around = 2 * M_PI * i / count;
+        Vec3 x = 18.5 * Vec3(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar));
+        for (int step = 0; step < 8; ++step) {
+          Vec3 gradient;
+          const double value = field.value(x, gradient);
+          if (gradient.norm() > 1e-3) x -= value / gradient.squaredNorm() * gradient;
+        }
+        points.push_back(x);
+      }
+    }
+    for (const Vec3& point : points) neighbors += field.jet(point).neighbors;
+    neighbors /= static_cast<double>(points.size());
+  }
+
+  std::vector<Vec3> particles;
+  std::vector<Vec3> velocities;
+  MetaballField field;
+  std::vector<Vec3> points;
+  double neighbors = 0;
+};
+
+const Body& body(double radius_in_spacings) {
+  static const Body two(2);
+  static const Body two_and_a_half(2.5);
+  static const Body three(3);
+  return radius_in_spacings < 2.25 ? two : radius_in_spacings < 2.75 ? two_and_a_half : three;
+}
+
+void report(benchmark::State& state, const Body& of, std::size_t points) {
+  state.counters["us_per_point"] = benchmark::Counter(
+      static_cast<double>(points) * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["neighbors"] = of.neighbors;
+}
+
+template <class Evaluate>
+void at_every_point(benchmark::State& state, double radius, const Evaluate& evaluate) {
+  const Body& of = body(radius);
+  for (auto iteration : state) {
+    for (const Vec3& point : of.points) benchmark::DoNotOptimize(evaluate(of.field, point));
+  }
+  report(state, of, of.points.size());
+}
+
+void register_benchmarks(double radius) {
+  const std::string suffix = "/radius:" + std::to_string(radius).substr(0, 3);
+  const auto add = [&suffix](const std::string& name, const auto& run) {
+    benchmark::RegisterBenchmark((name + suffix).c_str(), run)->Unit(benchmark::kMillisecond);
+  };
+  add("neighbors", [radius](benchmark::State& state) {
+    std::vector<int> found;
+    at_every_point(state, radius, [&found](const MetaballField& field, const Vec3& x) {
+      field.neighbors(x, field.settings().radius, found);
+      return found.size();
+    });
+  });
+  // Far fewer sums than in the jet: nearly all of this is the lookup.
+  add("value", [radius](benchmark::State& state) {
+    at_every_point(state, radius, [](const MetaballField& field, const Vec3& x) { return field.value(x); });
+  });
+  add("value_and_gradient", [radius](benchmark::State& state) {
+    at_every_point(state, radius, [](const MetaballField& field, const Vec3& x) {
+      Vec3 gradient;
+      return field.value(x, gradient) + gradient.x();
+    });
+  });
+  add("jet", [radius](benchmark::State& state) {
+    at_every_point(state, radius, [](const MetaballField& field, const Vec3& x) { return field.jet(x); });
+  });
+  for (const VelocityMethodInfo& method : velocity_methods()) {
+    add("velocity/" + method.name, [radius, &method](benchmark::State& state) {
+      const Body& of = body(radius);
+      const auto velocity = method.create();
+      std::vector<Vec3> velocities;
+      for (auto iteration : state) velocity->evaluate(of.field, {}, of.points, velocities);
+      report(state, of, of.points.size());
+    });
+  }
+  // Here a point is a particle.
+  add("build_field", [radius](benchmark::State& state) {
+    const Body& of = body(radius);
+    for (auto iteration : state) {
+      benchmark::DoNotOptimize(MetaballField(of.particles, of.velocities, of.field.settings()));
+    }
+    report(state, of, of.particles.size());
+  });
+}
+
+}  // namespace
+}  // namespace flowskin::tracking
+
+int main(int argc, char** argv) {
+  if (std::getenv("OMP_NUM_THREADS") == nullptr) omp_set_num_threads(1);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  for (const double radius : {2.0, 2.5, 3.0}) flowskin::tracking::register_benchmarks(radius);
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
