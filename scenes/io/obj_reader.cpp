@@ -3,9 +3,11 @@
 #include <tiny_obj_loader.h>
 
 #include <Eigen/Geometry>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <sstream>
+#include <string_view>
 
 #include "scenes/io/parse_number.h"
 #include "scenes/io/polygon.h"
@@ -45,29 +47,44 @@ void add_face(void* user, tinyobj::index_t* indices, int count) {
     corners.push_back(index > 0 ? index - 1 : read_so_far + index);
     // Indices of vertices that come later in the file are legal; they are checked at the end.
     if (index == 0 || corners.back() < 0)
-      obj.error =
-          face + " refers to vertex " + std::to_string(index) +
-          (index == 0 ? ", but vertices count from 1 (or the corner is no number)" : ", but fewer come before it");
+      obj.error = face + " refers to vertex " + std::to_string(index) +
+                  (index == 0 ? ", but vertices count from 1" : ", but fewer come before it");
   }
   obj.faces.push_back(std::move(corners));
 }
 
-/// tinyobjloader takes what is no number for 0, so the lines of vertices are checked before it sees them.
-void check_vertex_lines(std::string_view text, const std::string& name) {
+void check_vertex_line(std::string_view line, const std::string& place) {
+  for (const char axis : {'x', 'y', 'z'}) {
+    const std::string_view word = take_word(line);
+    std::string_view rest = word;
+    double value = 0;
+    if (!take_number(rest, value) || !rest.empty() || !std::isfinite(value))
+      throw SceneError(place + ": expected a finite number as " + axis + " of a vertex, found \"" +
+                       std::string(word.substr(0, 40)) + "\"");
+  }
+}
+
+void check_face_line(std::string_view line, const std::string& place) {
+  for (std::string_view word = take_word(line); !word.empty() && word[0] != '#'; word = take_word(line)) {
+    const std::string_view vertex = word.substr(0, word.find('/'));
+    int index = 0;
+    const auto [end, error] = std::from_chars(vertex.data(), vertex.data() + vertex.size(), index);
+    if (error != std::errc() || end != vertex.data() + vertex.size())
+      throw SceneError(place + ": expected a vertex index as corner of a face, found \"" +
+                       std::string(word.substr(0, 40)) + "\"");
+  }
+}
+
+/// tinyobjloader takes what is no number for 0, and an index beyond int for anything: so lines are checked before.
+void check_lines(std::string_view text, const std::string& name) {
   for (int line_number = 1; !text.empty(); ++line_number) {
     const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
     std::string_view line = text.substr(0, end);
     const bool two_characters = text.substr(end, 2) == "\r\n";
     text.remove_prefix(std::min(text.size(), end + (two_characters ? 2 : 1)));
-    if (take_word(line) != "v") continue;
-    for (const char axis : {'x', 'y', 'z'}) {
-      skip_space(line);
-      const std::string word(line.substr(0, line.find_first_of(" \t")));
-      double value = 0;
-      if (!take_number(line, value) || !std::isfinite(value) || (!line.empty() && line[0] != ' ' && line[0] != '\t'))
-        throw SceneError(name + ", line " + std::to_string(line_number) + ": expected a finite number as " + axis +
-                         " of a vertex, found \"" + word.substr(0, 40) + "\"");
-    }
+    const std::string_view keyword = take_word(line);
+    if (keyword == "v") check_vertex_line(line, name + ", line " + std::to_string(line_number));
+    if (keyword == "f") check_face_line(line, name + ", line " + std::to_string(line_number));
   }
 }
 
@@ -90,11 +107,11 @@ sph::TriangleMesh keep_referenced(const std::vector<Vec3>& positions, std::vecto
 
 }  // namespace
 
-sph::TriangleMesh read_obj(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  const std::string text = read_bytes(file);
+sph::TriangleMesh read_obj(const std::filesystem::path& file) { return parse_obj(read_bytes(file), file.string()); }
+
+sph::TriangleMesh parse_obj(const std::string& text, const std::string& name) {
   if (text.find('\0') != std::string::npos) throw SceneError(name + ": this is a binary file, no OBJ");
-  check_vertex_lines(text, name);
+  check_lines(text, name);
 
   tinyobj::callback_t callback;
   callback.vertex_cb = add_vertex;

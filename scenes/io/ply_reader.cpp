@@ -215,14 +215,14 @@ class PlyDataReader {
 
 }  // namespace
 
-PlyFile read_ply(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  const std::string bytes = read_bytes(file);
+PlyFile read_ply(const std::filesystem::path& file) { return parse_ply(read_bytes(file), file.string()); }
+
+PlyFile parse_ply(std::string_view bytes, const std::string& name) {
   const PlyHeader header = parse_ply_header(bytes, name);
   const bool has_vertices = std::any_of(header.elements.begin(), header.elements.end(),
                                         [](const PlyElement& element) { return element.name == "vertex"; });
   if (!has_vertices) throw SceneError(name + ": there is no element \"vertex\"");
-  const std::string_view data = std::string_view(bytes).substr(header.data_start);
+  const std::string_view data = bytes.substr(header.data_start);
   PlyFile ply;
   if (header.format == PlyFormat::ascii) {
     ply = PlyDataReader(AsciiCursor(data), name).read(header);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenes/sources/particle_source.h"
@@ -21,6 +22,8 @@ struct PlyFile {
 
 /// @throws SceneError naming the file and what is wrong with it (not a PLY, truncated, bad index, ...).
 PlyFile read_ply(const std::filesystem::path& file);
+/// The same from bytes in memory; `name` stands for the file in messages.
+PlyFile parse_ply(std::string_view bytes, const std::string& name);
 
 /// Particles from columns x, y, z and, where present, vx, vy, vz (or velocity_x, ...), rest_x, rest_y, rest_z, id,
 /// density.

@@ -1,0 +1,67 @@
+#include "tools/io/file_info.h"
+
+#include "tests/tools/io_fixture.h"
+#include "tools/errors.h"
+#include "tools/io/surface_writers.h"
+
+namespace flowskin::tools {
+namespace {
+
+class FileInfoTest : public IoTest {};
+
+std::string joined(const FileInfo& info) {
+  std::string text;
+  for (const std::string& line : info.lines) text += line + "\n";
+  return text;
+}
+
+TEST_F(FileInfoTest, SoundSurfaces) {
+  const SurfaceFrame frame = sphere_frame(3);
+  write_surface_obj(path("a.obj"), frame, "a.mtl");
+  write_surface_ply(path("a.ply"), frame);
+  for (const char* name : {"a.obj", "a.ply"}) {
+    const FileInfo info = describe_file(path(name));
+    EXPECT_TRUE(info.sound) << joined(info);
+    for (const char* fact : {"258 vertices, 512 triangles", "parts: 1, Euler characteristic 2", "volume: 4.0",
+                             "area: 12.", "bounds: x -0.9 to 1.1"})
+      EXPECT_NE(joined(info).find(fact), std::string::npos) << fact << "\n" << joined(info);
+  }
+}
+
+TEST_F(FileInfoTest, OpenAndInsideOutSurfacesAreUnsound) {
+  SurfaceFrame frame = sphere_frame(1);
+  frame.mesh.triangles.pop_back();
+  frame.corner_uvs.pop_back();
+  write_surface_ply(path("open.ply"), frame);
+  EXPECT_FALSE(describe_file(path("open.ply")).sound);
+  frame = sphere_frame(1);
+  for (auto& triangle : frame.mesh.triangles) std::swap(triangle[0], triangle[1]);
+  write_surface_obj(path("out.obj"), frame, "a.mtl");
+  const FileInfo info = describe_file(path("out.obj"));
+  EXPECT_FALSE(info.sound);
+  EXPECT_NE(joined(info).find("not a sound closed surface"), std::string::npos);
+}
+
+TEST_F(FileInfoTest, Particles) {
+  write_particles_ply(path("p.ply"), particle_frame(10));
+  const FileInfo info = describe_file(path("p.ply"));
+  EXPECT_TRUE(info.sound);
+  for (const char* fact : {"particles: 10", "speed: ", "density: 1000 to 1001.29 kg/m^3", "ids: 7 to 25", "rest_x"})
+    EXPECT_NE(joined(info).find(fact), std::string::npos) << fact << "\n" << joined(info);
+  write_particles_ply(path("none.ply"), particle_frame(0));
+  EXPECT_NE(joined(describe_file(path("none.ply"))).find("particles: 0"), std::string::npos);
+}
+
+TEST_F(FileInfoTest, SaysWhatCannotBeRead) {
+  EXPECT_NE(message_of<InputError>([&] { describe_file(path("a.stl")); }).find("expected an OBJ or PLY"),
+            std::string::npos);
+  EXPECT_NE(message_of<InputError>([&] { describe_file(path("a.obj")); }).find("no such file"), std::string::npos);
+  const std::string twice = write_text("t.ply",
+                                       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                                       "property float z\nproperty int id\nend_header\n0 0 0 4\n1 1 1 4\n");
+  EXPECT_NE(message_of<InputError>([&] { describe_file(twice); }).find("two particles have the id 4"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace flowskin::tools
