@@ -1,0 +1,46 @@
+// flowskin info FILE...: what is in a file, and whether it is sound.
+#include <fmt/format.h>
+
+#include "scenes/scene_file.h"
+#include "tools/commands/commands.h"
+#include "tools/errors.h"
+#include "tools/io/file_info.h"
+#include "tools/pipeline/tracker_bridge.h"
+
+namespace flowskin::tools {
+
+namespace {
+
+FileInfo describe_scene(const std::filesystem::path& file) {
+  const scenes::Scene scene = scenes::read_scene(file, scene_vocabulary());
+  using Source = scenes::ParticlesSpec::Source;
+  const Source source = scene.particles.source;
+  const char* name = source == Source::simulation   ? "a simulation"
+                     : source == Source::prescribed ? "prescribed motion"
+                                                    : "a recorded sequence";
+  FileInfo info;
+  info.lines = {fmt::format("scene \"{}\"{}{}", scene.name, scene.description.empty() ? "" : ": ", scene.description),
+                fmt::format("{} frames at {} per second, particles from {}, spacing {} m", scene.frames,
+                            scene.frame_rate, name, scene.particles.spacing),
+                fmt::format("{} fluid bodies, {} emitters, {} walls", scene.bodies.size(), scene.emitters.size(),
+                            scene.boundaries.size()),
+                fmt::format("velocity method {}, texture {} ({} mapping)", scene.tracking.velocity, scene.texture.image,
+                            scene.texture.mapping)};
+  return info;
+}
+
+}  // namespace
+
+int info_command(const std::vector<std::filesystem::path>& files) {
+  bool sound = true;
+  for (const auto& file : files) {
+    const FileInfo info = file.extension() == ".json" ? describe_scene(file) : describe_file(file);
+    fmt::print("{}\n", file.string());
+    for (const std::string& line : info.lines) fmt::print("  {}\n", line);
+    sound = sound && info.sound;
+  }
+  if (!sound) throw InputError("not every file is sound; the lines above say what is wrong");
+  return 0;
+}
+
+}  // namespace flowskin::tools
