@@ -154,6 +154,10 @@ Table<Scene> solver_keys() {
   const auto solver = &S::solver;
   const auto kernel = choice_of<sph::KernelType>(
       {{"wendland_c2", sph::KernelType::wendland_c2}, {"cubic_spline", sph::KernelType::cubic_spline}});
+  const auto density = choice_of<sph::DensityMethod>(
+      {{"summation", sph::DensityMethod::summation}, {"continuity", sph::DensityMethod::continuity}});
+  const auto viscosity = choice_of<sph::ViscosityForm>(
+      {{"monaghan", sph::ViscosityForm::monaghan}, {"morris", sph::ViscosityForm::morris}});
   Table<S> table = {
       key<S>("fluid.density", at(solver, &Settings::rest_density), number(above(0, 1e5)), "kg/m^3", "Density at rest."),
       key<S>("fluid.viscosity", at(solver, &Settings::viscosity), number(at_least(0, 1e4)), "m^2/s",
@@ -168,8 +172,15 @@ Table<Scene> solver_keys() {
              "Speed of sound; 0: ten times the fastest flow expected."),
       key<S>("simulation.xsph", at(solver, &Settings::xsph), number(at_least(0, 1)), "",
              "Share of XSPH smoothing in the velocity that moves particles."),
+      key<S>("simulation.viscosity_form", at(solver, &Settings::viscosity_form), viscosity, "",
+             "Discrete form of the viscous force; monaghan keeps angular momentum."),
+      key<S>("simulation.density_method", at(solver, &Settings::density_method), density, "",
+             "Density by summation over the neighbours (cannot drift) or from the continuity equation.")
+          .selecting(),
       key<S>("simulation.density_diffusion", at(solver, &Settings::density_diffusion), number(at_least(0, 1)), "",
-             "Coefficient of the density diffusion; 0: none."),
+             "Coefficient of the density diffusion; 0: none.")
+          .only_for("simulation.density_method \"continuity\"",
+                    [](const S& s) { return s.solver.density_method == sph::DensityMethod::continuity; }),
       key<S>("simulation.acoustic_cfl", at(solver, &Settings::acoustic_cfl), number(above(0, 2)), "",
              "Time step at most this times h / (c + v): h smoothing length, c speed of sound, v speed."),
       key<S>("simulation.viscous_cfl", at(solver, &Settings::viscous_cfl), number(above(0, 1)), "",
@@ -186,8 +197,10 @@ Table<Scene> solver_keys() {
              "Upper corner of the domain."),
   };
   for (Key<S>& key : table) {
-    key.condition = "particles.source \"simulation\"";
-    key.applies = [](const S& s) { return s.particles.source == ParticlesSpec::Source::simulation; };
+    if (key.condition.empty()) key.condition = "particles.source \"simulation\"";
+    key.applies = [own = key.applies](const S& s) {
+      return s.particles.source == ParticlesSpec::Source::simulation && (!own || own(s));
+    };
   }
   return table;
 }
@@ -249,6 +262,10 @@ Table<Scene> texture_keys() {
              "Edge of one copy of the image on the fluid; 0: from the size of the fluid."),
       key<S>("texture.axis", at(texture, &T::axis), vector(), "",
              "Direction of projection (planar), pole (spherical)."),
+      key<S>("texture.rest_center", at(texture, &T::rest_center), vector(), "m",
+             "Centre of the fluid at rest, which the mapping refers to; used where rest_size is not 0."),
+      key<S>("texture.rest_size", at(texture, &T::rest_size), number(at_least(0, 1e5)), "m",
+             "Longest edge of the box around the fluid at rest; 0: centre and size from the particles at the start."),
   };
 }
 

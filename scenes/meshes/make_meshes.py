@@ -2,7 +2,7 @@
 """Makes the OBJ files of this folder. Lengths in m, y up; run it here after changing a number."""
 import math
 
-STEPS, DEPTH, HEIGHT, LANDING, WIDTH = 6, 0.20, 0.14, 0.90, 1.40
+STEPS, DEPTH, HEIGHT, LANDING, WIDTH = 6, 0.20, 0.14, 0.80, 1.80
 
 
 class Mesh:
@@ -43,19 +43,11 @@ def stairs():
     mesh.write("stairs.obj", f"A flight of {STEPS} steps, {DEPTH} m deep and {HEIGHT} m high, with a landing")
 
 
-def stairs_surroundings():
-    """Floor in front of the stairs, and walls around everything that hold the fluid together."""
-    half, foot, far, top = WIDTH / 2, DEPTH * (STEPS - 1), 2.2, 1.7
-    floor = Mesh()
-    floor.face((foot, 0, half), (far, 0, half), (far, 0, -half), (foot, 0, -half))
-    floor.write("stairs_floor.obj", "The floor in front of the stairs")
-    walls = Mesh()
-    back = -LANDING
-    walls.face((back, 0, half), (back, top, half), (far, top, half), (far, 0, half))
-    walls.face((back, 0, -half), (far, 0, -half), (far, top, -half), (back, top, -half))
-    walls.face((back, 0, -half), (back, top, -half), (back, top, half), (back, 0, half))
-    walls.face((far, 0, -half), (far, 0, half), (far, top, half), (far, top, -half))
-    walls.write("stairs_walls.obj", "Walls around the stairs, without roof and floor")
+def stairs_floor():
+    """The floor in front of the stairs, as wide as they are."""
+    mesh, half, foot, far = Mesh(), WIDTH / 2, DEPTH * (STEPS - 1), 1.9
+    mesh.face((foot, 0, half), (far, 0, half), (far, 0, -half), (foot, 0, -half))
+    mesh.write("stairs_floor.obj", "The floor in front of the stairs")
 
 
 def box():
@@ -103,7 +95,7 @@ def cone(radius=0.2, height=0.25, around=48):
 
 if __name__ == "__main__":
     stairs()
-    stairs_surroundings()
+    stairs_floor()
     box()
     torus()
     cone()

@@ -130,6 +130,8 @@ TEST(SceneFileErrors, KeysOfAnotherKindOfObject) {
   EXPECT_THAT(error_of(small_scene(R"("particles_": 1)")), HasSubstr("particles_"));
   EXPECT_THAT(error_of(R"({"particles": {"spacing": 0.1, "jitter": 0.1}, "bodies": []})"),
               HasSubstr("belongs to particles.source \"prescribed\" only"));
+  EXPECT_THAT(error_of(small_scene(R"("simulation": {"density_diffusion": 0.1})")),
+              HasSubstr("belongs to simulation.density_method \"continuity\" only"));
   // One wrong shape must not make an error of each of its keys.
   const std::string message =
       error_of(R"({"particles": {"spacing": 0.1}, "bodies": [{"shape": "bal", "center": [0,0,0], "radius": 1}]})");
