@@ -25,7 +25,7 @@ class MetaballSums {
  public:
   /// Lanes that hold no neighbour must be zero throughout.
   void add(const NeighborLanes* lanes, int count, bool moving);
-  /// @param radius sigma (m); @param weight w; @param threshold T
+  /// The jet, in units, of the field that these settings make of the neighbours.
   Jet jet(const FieldSettings& settings) const;
 
  private:

@@ -138,21 +138,22 @@ int ParticleBlocks::near(const Vec3& x, double radius, std::vector<int>& found) 
   const std::size_t most = near_blocks.size() * largest_count / lane_count;
   if (found.size() < most) found.resize(most);
   const double limit = square(radius * margin);
-  const auto beyond = [](const Lanes& low, const Lanes& high, double at) {  // of an interval, 0 inside
+  const auto add_square_beyond = [](const Lanes& low, const Lanes& high, double at, Lanes& sum) {
     const Lanes below = low - at;
     const Lanes above = at - high;
-    const Lanes outside = below > above ? below : above;
-    return outside > 0 ? outside : Lanes{};
+    const Lanes outside = below > above ? below : above;  // of the interval; negative inside
+    sum += outside > 0 ? outside * outside : Lanes{};
   };
   int count = 0;
   for (const int index : near_blocks) {
     const Block& block = blocks_[index];
     for (int b = block.first_boxes; b < block.last_boxes; ++b) {
       const GroupBoxes& boxes = boxes_[b];
-      const Lanes dx = beyond(boxes.low_x, boxes.high_x, x.x());
-      const Lanes dy = beyond(boxes.low_y, boxes.high_y, x.y());
-      const Lanes dz = beyond(boxes.low_z, boxes.high_z, x.z());
-      const LaneMask reached = dx * dx + dy * dy + dz * dz <= limit;
+      Lanes distance_squared{};
+      add_square_beyond(boxes.low_x, boxes.high_x, x.x(), distance_squared);
+      add_square_beyond(boxes.low_y, boxes.high_y, x.y(), distance_squared);
+      add_square_beyond(boxes.low_z, boxes.high_z, x.z(), distance_squared);
+      const LaneMask reached = distance_squared <= limit;
       for (int lane = 0; lane < lane_count; ++lane) {  // without branches: which ones are near cannot be foretold
         found[count] = b * lane_count + lane;
         count -= static_cast<int>(reached[lane]);
