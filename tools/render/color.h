@@ -34,7 +34,7 @@ inline Color to_srgb(const Vec3f& linear) {
   Color color;
   for (int i = 0; i < 3; ++i) {
     const float clamped = linear[i] > 0 ? std::min(linear[i], 1.0f) : 0.0f;  // NaN becomes 0
-    color[std::size_t(i)] = std::uint8_t(255 * linear_to_srgb(clamped) + 0.5f);
+    color[std::size_t(i)] = std::uint8_t(std::lround(255 * linear_to_srgb(clamped)));
   }
   return color;
 }

@@ -1,7 +1,6 @@
 #include "tools/render/film.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -51,7 +50,7 @@ void Film::set_pixel(int x, int y, const std::vector<Sample>& samples) {
 }
 
 Vec3f Film::smooth_irradiance(int x, int y, const Layer& layer) const {
-  constexpr std::array<float, 5> share{0.5f, 1, 1, 1, 0.5f};
+  constexpr float share[5] = {0.5f, 1, 1, 1, 0.5f};
   const Sample& center = layer.sum;
   Vec3f sum = center.irradiance / layer.samples;
   float weights = 1;
@@ -64,7 +63,7 @@ Vec3f Film::smooth_irradiance(int x, int y, const Layer& layer) const {
       if (cosine < 0.8f || off_plane > 3) continue;
       // Full weight where normals agree to about 10 degrees, none from 37 degrees on.
       const float agreement = std::min(1.0f, (cosine - 0.8f) / 0.18f) * (off_plane < 1.5f ? 1 : 2 - off_plane / 1.5f);
-      const float weight = agreement * share[std::size_t(i - x + 2)] * share[std::size_t(j - y + 2)];
+      const float weight = agreement * share[i - x + 2] * share[j - y + 2];
       sum += weight / other.samples * other.sum.irradiance;
       weights += weight;
     }

@@ -180,7 +180,7 @@ class Mask {
       if (coverage_[i] == 0) continue;
       for (std::size_t c = 0; c < 3; ++c) {
         const float old = image.pixels[i][c];
-        image.pixels[i][c] = std::uint8_t(old + coverage_[i] * (float(color[c]) - old) + 0.5f);
+        image.pixels[i][c] = std::uint8_t(std::lround(old + coverage_[i] * (float(color[c]) - old)));
       }
     }
   }

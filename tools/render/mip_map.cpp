@@ -17,8 +17,8 @@ MipMap::MipMap(const Image& image) {
     full.texels.reserve(image.pixels.size());
     for (const Color& pixel : image.pixels) {
       const Vec3f linear = 65535 * to_linear(pixel);
-      full.texels.push_back(
-          {std::uint16_t(linear.x() + 0.5f), std::uint16_t(linear.y() + 0.5f), std::uint16_t(linear.z() + 0.5f)});
+      full.texels.push_back({std::uint16_t(std::lround(linear.x())), std::uint16_t(std::lround(linear.y())),
+                             std::uint16_t(std::lround(linear.z()))});
     }
   }
   levels_.push_back(std::move(full));

@@ -116,7 +116,7 @@ struct Renderer::Impl {
   void keep_static_samples();
 
   std::size_t light_index(int x, int y, int sample) const {
-    return std::size_t(interleaved_set(x, y) * settings_.samples + sample);
+    return std::size_t(interleaved_set(x, y)) * std::size_t(settings_.samples) + std::size_t(sample);
   }
   Vec3f direction(int x, int y, int sample) const {
     const Vec2f& offset = pixel_offsets_[std::size_t(sample)];
@@ -358,7 +358,7 @@ Image Renderer::Impl::draw(const Subject& subject) const {
 }
 
 Renderer::Renderer(const scenes::RenderSpec& settings, const std::vector<scenes::BoundarySpec>& boundaries,
-                   Image texture, const sph::Box& fluid) {
+                   const Image& texture, const sph::Box& fluid) {
   check_settings(settings);
   const std::vector<Vec3> seen = points_to_see(boundaries, fluid);
   impl_ = std::make_unique<Impl>(settings, boundaries, texture, seen, bounding_box(seen));

@@ -14,8 +14,8 @@ namespace flowskin::tools {
 class Renderer {
  public:
   /// `texture` is what corner_uvs refer to. A camera whose position is all zero is placed to see the walls and `fluid`.
-  Renderer(const scenes::RenderSpec& settings, const std::vector<scenes::BoundarySpec>& boundaries, Image texture,
-           const sph::Box& fluid);
+  Renderer(const scenes::RenderSpec& settings, const std::vector<scenes::BoundarySpec>& boundaries,
+           const Image& texture, const sph::Box& fluid);
   ~Renderer();
 
   /// The surface in the style of the settings. The same bytes at any thread count.

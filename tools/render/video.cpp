@@ -16,8 +16,6 @@
 
 #include "tools/errors.h"
 
-extern char** environ;
-
 namespace flowskin::tools {
 namespace {
 
@@ -42,6 +40,7 @@ std::string read_all(int descriptor) {
 // Runs a program found on the path, without a shell: arguments may contain anything.
 Outcome run_program(const std::vector<std::string>& arguments) {
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
 
@@ -88,20 +87,58 @@ std::string input_pattern(const fs::path& pattern) {
   return folder + "/" + pattern.filename().string();
 }
 
+// H.264 with 4:2:0 colour needs even sizes: an odd last row or column is cut off. The colours are turned to those of HD
+// video, and the file says so; accurate rounding is the same on every machine.
+constexpr const char* picture_filter =
+    "crop=trunc(iw/2)*2:trunc(ih/2)*2:0:0,"
+    "scale=flags=bicubic+accurate_rnd+full_chroma_int+bitexact:out_color_matrix=bt709:out_range=tv,format=yuv420p";
+
+// The same bytes each time: x264 divides the work by its number of threads, so that is fixed, and files carry no dates.
 std::vector<std::string> ffmpeg_arguments(const fs::path& pattern, double frame_rate, const fs::path& file) {
-  return {
-      "ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-f", "image2", "-framerate",
-      fmt::format("{}", frame_rate), "-i", input_pattern(pattern),
-      // H.264 with 4:2:0 colour needs even sizes: an odd last row or column is cut off. The colours are turned to
-      // those of HD video, and the file says so; accurate rounding is the same on every machine.
-      "-filter_threads", "1", "-vf",
-      "crop=trunc(iw/2)*2:trunc(ih/2)*2:0:0,"
-      "scale=flags=bicubic+accurate_rnd+full_chroma_int+bitexact:out_color_matrix=bt709:out_range=tv,format=yuv420p",
-      "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv", "-c:v",
-      "libx264", "-preset", "medium", "-crf", "18",
-      // The same bytes each time: x264 divides the work by its number of threads, and files carry dates.
-      "-threads", "2", "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags",
-      "+faststart", "-f", "mp4", file.string()};
+  const std::string rate = fmt::format("{}", frame_rate), input = input_pattern(pattern), output = file.string();
+  return {"ffmpeg",
+          "-nostdin",
+          "-hide_banner",
+          "-loglevel",
+          "error",
+          "-y",
+          "-f",
+          "image2",
+          "-framerate",
+          rate,
+          "-i",
+          input,
+          "-filter_threads",
+          "1",
+          "-vf",
+          picture_filter,
+          "-colorspace",
+          "bt709",
+          "-color_primaries",
+          "bt709",
+          "-color_trc",
+          "bt709",
+          "-color_range",
+          "tv",
+          "-c:v",
+          "libx264",
+          "-preset",
+          "medium",
+          "-crf",
+          "18",
+          "-threads",
+          "2",
+          "-map_metadata",
+          "-1",
+          "-fflags",
+          "+bitexact",
+          "-flags:v",
+          "+bitexact",
+          "-movflags",
+          "+faststart",
+          "-f",
+          "mp4",
+          output};
 }
 
 }  // namespace
