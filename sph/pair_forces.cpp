@@ -67,6 +67,17 @@ struct Sums {
   Float8 diffusion{};
   Float8 sx{}, sy{}, sz{};  // XSPH
   Float8 wall_distance2 = broadcast(1e18F);
+  Float8 fx{}, fy{}, fz{};  // friction on walls ...
+  Float8 friction_rate{};   // ... and the rate (1/s) at which it would stop the particle
+
+  // Friction on walls is taken at the end of the step instead of its start (implicit Euler, with the rate as a scalar):
+  // it grows without limit as a particle comes close to a wall, and so can brake, but not throw back.
+  void add_friction(float time_step) {
+    const Float8 share = broadcast(1.0F) / (broadcast(1.0F) + broadcast(time_step) * friction_rate);
+    ax += share * fx;
+    ay += share * fy;
+    az += share * fz;
+  }
 };
 
 // Constants in all lanes.
@@ -138,18 +149,20 @@ inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPac
   const Float8 s = broadcast(b.volume) * Kernel::shape(sqrt(r2) * c.wall_inverse_support);
   const Float8 approach = i.vx * dx + i.vy * dy + i.vz * dz;
   sums.wall_divergence += s * approach;
-  const Float8 pressure = i.pressure * c.wall_pressure;
-  const Float8 friction = broadcast(b.stick) * c.wall_viscosity / (r2 + c.wall_softening);
+  const Float8 pressure = s * i.pressure * c.wall_pressure;
+  sums.ax += pressure * dx;
+  sums.ay += pressure * dy;
+  sums.az += pressure * dz;
+  const Float8 friction = s * broadcast(b.stick) * c.wall_viscosity / (r2 + c.wall_softening);
+  sums.friction_rate += friction * r2;
   if constexpr (monaghan) {
-    const Float8 f = s * (pressure - friction * approach);
-    sums.ax += f * dx;
-    sums.ay += f * dy;
-    sums.az += f * dz;
+    sums.fx -= friction * approach * dx;
+    sums.fy -= friction * approach * dy;
+    sums.fz -= friction * approach * dz;
   } else {
-    const Float8 f = s * pressure, g = s * friction * r2;
-    sums.ax += f * dx - g * i.vx;
-    sums.ay += f * dy - g * i.vy;
-    sums.az += f * dz - g * i.vz;
+    sums.fx -= friction * r2 * i.vx;
+    sums.fy -= friction * r2 * i.vy;
+    sums.fz -= friction * r2 * i.vz;
   }
 }
 
@@ -168,6 +181,7 @@ void run_forces(const PairCoefficients& coefficients, const PairData& data) {
     for (const std::uint32_t b : data.wall_lists->of_cluster(cluster)) {
       add_wall<Kernel, monaghan>(c, targets, data.walls[b], sums);
     }
+    sums.add_friction(data.time_step);
     for (std::uint32_t k = 0; k < count; ++k) {
       // Continuity: d(rho / rho_0)/dt = V sum v_ij . grad W [Monaghan 1992, Eq. 2.17], plus the diffusion.
       const float rate = coefficients.diffusion * sums.diffusion[k] -

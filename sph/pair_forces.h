@@ -48,6 +48,7 @@ struct PairData {
   const NeighborLists* fluid_lists;
   std::span<const WallPack> walls;
   const NeighborLists* wall_lists;
+  float time_step;                    ///< s; makes the friction on walls stable at any viscosity
   std::span<ParticleRates> rates;     ///< out
   std::span<float> wall_distances;    ///< out: distance to the nearest boundary particle in the lists, else 1e9 (m)
   std::span<Eigen::Vector3f> shifts;  ///< out: XSPH velocity change (m/s); empty where XSPH is off

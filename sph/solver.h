@@ -58,7 +58,7 @@ struct SolverSettings {
   DensityMethod density_method = DensityMethod::summation;
   double density_diffusion = 0.1;  ///< Continuity density only: coefficient delta of its diffusion; 0: none.
   double acoustic_cfl = 0.4;       ///< dt <= acoustic_cfl h / (c + |v|), h the smoothing length
-  double viscous_cfl = 0.125;      ///< dt <= viscous_cfl h^2 / nu
+  double viscous_cfl = 0.125;      ///< dt <= viscous_cfl h^2 / nu; monaghan, stiffer along the pair: half of it
   double force_cfl = 0.25;         ///< dt <= force_cfl sqrt(h / |a|)
   double max_time_step = 1e9;      ///< s
   double skin = 0;                 ///< Skin of the Verlet lists, in spacings; 0: the recommended one.

@@ -134,7 +134,8 @@ TimeStepReport SolverImpl::choose_step(double limit) const {
   const double h = smoothing_length_;
   TimeStepReport report;
   report.acoustic = settings_.acoustic_cfl * h / (settings_.speed_of_sound + greatest_speed_);
-  report.viscous = settings_.viscosity > 0 ? settings_.viscous_cfl * h * h / settings_.viscosity : infinity;
+  const double viscous_cfl = settings_.viscous_cfl * (settings_.viscosity_form == ViscosityForm::monaghan ? 0.5 : 1.0);
+  report.viscous = settings_.viscosity > 0 ? viscous_cfl * h * h / settings_.viscosity : infinity;
   report.force = greatest_acceleration_ > 0 ? settings_.force_cfl * std::sqrt(h / greatest_acceleration_) : infinity;
   report.step = infinity;
   const auto apply = [&](double value, const char* name) {
@@ -322,9 +323,11 @@ void SolverImpl::collect_wall_triangles() {
 
 void SolverImpl::evaluate_forces() {
   const Stopwatch watch(statistics_.seconds_forces);
-  const PairData data{particles_.packs,          &clusters_,       &fluid_lists_,
-                      boundary_.packs,           &wall_lists_,     particles_.rates,
-                      particles_.wall_distances, particles_.shifts};
+  const PairData data{particles_.packs, &clusters_,
+                      &fluid_lists_,    boundary_.packs,
+                      &wall_lists_,     static_cast<float>(statistics_.last_step.step),
+                      particles_.rates, particles_.wall_distances,
+                      particles_.shifts};
   if (settings_.density_method == DensityMethod::summation) sum_densities(coefficients_, settings_, data);
   compute_forces(coefficients_, settings_, data);
 }
