@@ -39,7 +39,7 @@ class Vtp {
     EXPECT_LE(at + size, end_) << array;
     covered_ += 8 + size;
     std::vector<T> values(size / sizeof(T));
-    std::memcpy(values.data(), bytes_.data() + at, size);
+    if (size > 0) std::memcpy(values.data(), bytes_.data() + at, size);
     return values;
   }
   /// True where the arrays asked for so far make up all of the data.
