@@ -14,6 +14,7 @@
 #include "tracking/fairing/repair.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/topology.h"
+#include "tracking/remeshing/remesh.h"
 #include "tracking/topology/guard.h"
 #include "tracking/topology/material.h"
 
@@ -176,6 +177,7 @@ class TrackerImpl {
       Stopwatch watch(report_.seconds_fairing);
       fair(*field_, topology_, rest_lengths_, {settings_.fairing_iterations, settings_.fairing_stiffness},
            mesh_.positions);
+      if (settings_.remeshing) remesh_surface();
     }
     Projection projection;
     {
@@ -185,6 +187,21 @@ class TrackerImpl {
     Stopwatch watch(report_.seconds_fairing);
     repair(*field_, default_projection(settings_.field), topology_, mesh_.triangles, mesh_.positions, projection);
     return projection;
+  }
+
+  // Edges near their target length; the springs of edges that stay keep their rest lengths.
+  void remesh_surface() {
+    const std::vector<std::uint64_t> old_ids = mesh_.ids;
+    RemeshSettings limits;
+    limits.edge_length = settings_.edge_length;
+    const RemeshReport done = remesh(*field_, limits, mesh_);
+    report_.splits = done.splits;
+    report_.collapses = done.collapses;
+    report_.flips = done.flips;
+    if (!done.changed()) return;
+    const MeshTopology old_topology =
+        std::exchange(topology_, build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles));
+    rest_lengths_ = carry_rest_lengths(old_ids, old_topology, rest_lengths_, mesh_, topology_, settings_.edge_length);
   }
 
   // Replaces a mesh that does not fit the field any more.

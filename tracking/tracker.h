@@ -22,20 +22,22 @@ struct TrackerSettings {
   double edge_length = 0;          ///< Edge length of an extracted mesh (m); 0: 0.8 spacings.
   int fairing_iterations = 10;     ///< [FMM13, 3.4]
   double fairing_stiffness = 0.3;  ///< Share of the way to the spring equilibrium an iteration goes, 0 to 1.
+  bool remeshing = true;           ///< Split, collapse and flip edges of a stretching mesh; false: as in the paper.
   bool guard = true;               ///< Replace a mesh that no longer fits the field by a fresh extraction.
 };
 
 /// What happened in the last call of Tracker::advance, and how well the mesh fits now.
 struct TrackerReport {
   int substeps = 0;
-  bool reextracted = false;     ///< The guard replaced the mesh.
-  std::string reason;           ///< Why, in words; empty where it did not.
-  int components = 0;           ///< Of the mesh.
-  int expected_components = 0;  ///< Of a fresh extraction.
-  double volume = 0;            ///< m^3
-  double expected_volume = 0;   ///< Of a fresh extraction (m^3).
-  double area = 0;              ///< m^2
-  double max_distance = 0;      ///< Largest |f| / |grad f| at the vertices (m).
+  bool reextracted = false;                  ///< The guard replaced the mesh.
+  std::string reason;                        ///< Why, in words; empty where it did not.
+  int splits = 0, collapses = 0, flips = 0;  ///< Of the remeshing.
+  int components = 0;                        ///< Of the mesh.
+  int expected_components = 0;               ///< Of a fresh extraction.
+  double volume = 0;                         ///< m^3
+  double expected_volume = 0;                ///< Of a fresh extraction (m^3).
+  double area = 0;                           ///< m^2
+  double max_distance = 0;                   ///< Largest |f| / |grad f| at the vertices (m).
   double seconds_velocity = 0, seconds_projection = 0, seconds_fairing = 0, seconds_guard = 0;
 };
 

@@ -10,11 +10,10 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kLargestTurn = 0.5;     // cosine of 60 degrees
-constexpr double kSliver = 0.15;         // shape() of a triangle not to be made
-constexpr double kTinyEdge = 0.15;       // of the longest edge
-constexpr double kFlat = 0.8;            // cosine of the largest angle between triangles whose edge may be flipped
-constexpr double kDelaunaySlack = 1e-6;  // rad
+constexpr double kLargestTurn = 0.5;  // cosine of 60 degrees
+constexpr double kSliver = 0.15;      // shape() of a triangle not to be made
+constexpr double kTinyEdge = 0.15;    // of the longest edge
+constexpr double kFlat = 0.8;         // cosine of the largest angle between triangles whose edge may be flipped
 
 bool contains(const Triangle& triangle, int vertex) {
   return std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
@@ -127,12 +126,32 @@ bool EditableMesh::collapse(int kept, int removed, double longest_edge) {
   return true;
 }
 
-bool EditableMesh::wants_flip(int a, int b) const {
+int EditableMesh::split(int a, int b) {
+  std::array<int, 2> triangles{}, opposite{};
+  if (a == b || !alive(a) || !alive(b) || !wings(a, b, triangles, opposite)) return -1;
+  const int middle = static_cast<int>(positions_.size());
+  positions_.push_back((positions_[a] + positions_[b]) / 2);
+  stars_.emplace_back();
+  for (int side = 0; side < 2; ++side) {
+    // The old triangle keeps a, its new twin gets b.
+    const int old = triangles[side], twin = static_cast<int>(triangles_.size());
+    Triangle copy = triangles_[old];
+    std::replace(copy.begin(), copy.end(), a, middle);
+    triangles_.push_back(copy);
+    std::replace(triangles_[old].begin(), triangles_[old].end(), b, middle);
+    std::replace(stars_[b].begin(), stars_[b].end(), old, twin);
+    stars_[opposite[side]].push_back(twin);
+    stars_[middle].insert(stars_[middle].end(), {old, twin});
+  }
+  return middle;
+}
+
+bool EditableMesh::wants_flip(int a, int b, double slack) const {
   std::array<int, 2> triangles{}, opposite{};
   if (!alive(a) || !alive(b) || !wings(a, b, triangles, opposite)) return false;
   return angle_at(positions_[opposite[0]], positions_[a], positions_[b]) +
              angle_at(positions_[opposite[1]], positions_[a], positions_[b]) >
-         M_PI + kDelaunaySlack;
+         M_PI + slack;
 }
 
 bool EditableMesh::flip(int a, int b) {
@@ -163,7 +182,7 @@ bool EditableMesh::flip(int a, int b) {
   return true;
 }
 
-void EditableMesh::compact() {
+std::vector<int> EditableMesh::compact() {
   std::vector<int> number(positions_.size(), -1);
   int count = 0;
   for (int vertex = 0; vertex < static_cast<int>(positions_.size()); ++vertex) {
@@ -176,6 +195,7 @@ void EditableMesh::compact() {
   for (Triangle& triangle : triangles_) {
     for (int& vertex : triangle) vertex = number[vertex];
   }
+  return number;
 }
 
 }  // namespace flowskin::tracking

@@ -1,4 +1,4 @@
-// Edge collapses and flips on a closed two-manifold mesh, each with its vetoes.
+// Edge splits, collapses and flips on a closed two-manifold mesh, each with its vetoes.
 #pragma once
 
 #include <vector>
@@ -18,19 +18,24 @@ class EditableMesh {
   /// more than 60 degrees or become a sliver, or where an edge would grow beyond `longest_edge` (m).
   bool collapse(int kept, int removed, double longest_edge);
 
+  /// Puts a new vertex, the last one, in the middle of edge ab and returns its index; -1 where there is no such edge.
+  int split(int a, int b);
+
   /// Turns edge ab to the other diagonal of its two triangles. Refused, with false, where that edge exists already,
   /// where an end would keep fewer than three edges, or where the two triangles do not lie nearly in a plane.
   bool flip(int a, int b);
 
-  /// True where the angles opposite of edge ab add up to more than 180 degrees: the edge is not Delaunay.
-  bool wants_flip(int a, int b) const;
+  /// True where the angles opposite of edge ab add up to more than 180 degrees and the slack (rad): the edge is not
+  /// Delaunay.
+  bool wants_flip(int a, int b, double slack = 1e-6) const;
 
   bool alive(int vertex) const { return !stars_[vertex].empty(); }
   /// Neighbours of a vertex, ascending.
   std::vector<int> ring(int vertex) const;
 
-  /// Drops the removed vertices and triangles, keeping the order of the others. Nothing else may be called afterwards.
-  void compact();
+  /// Drops the removed vertices and triangles, keeping the order of the others. Returns the new index of each vertex,
+  /// -1 for a removed one. Nothing else may be called afterwards.
+  std::vector<int> compact();
 
  private:
   /// The two triangles of edge ab and the vertices opposite of it; false where there are not exactly two.
