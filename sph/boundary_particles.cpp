@@ -38,8 +38,6 @@ void place_at_origin(BoundaryParticles& boundary, const Vec3& origin, const Wall
     points[k] = (positions[k] - origin).cast<float>();
   }
   boundary.positions = std::move(positions);
-  boundary.volumes = std::move(volumes);
-  boundary.slips = std::move(slips);
 
   boundary.packs.resize(count);
   const double unit = wall.support * wall.support * wall.support;
@@ -47,10 +45,12 @@ void place_at_origin(BoundaryParticles& boundary, const Vec3& origin, const Wall
     boundary.packs[k] = {points[k].x(),
                          points[k].y(),
                          points[k].z(),
-                         static_cast<float>(boundary.volumes[k] / unit),
-                         static_cast<float>(1 - boundary.slips[k]),
+                         static_cast<float>(volumes[k] / unit),
+                         static_cast<float>(1 - slips[k]),
                          {}};
   }
+  boundary.volumes = {};
+  boundary.slips = {};
   boundary.clusters.assign(points, static_cast<float>(6 * wall.sample_spacing));
 }
 

@@ -14,8 +14,8 @@ namespace flowskin::sph {
 /// Boundary particles of all walls in the order of a space-filling curve, and the triangles they were made from.
 struct BoundaryParticles {
   std::vector<Vec3> positions;  ///< m
-  std::vector<double> volumes;  ///< m^3
-  std::vector<double> slips;    ///< 0 to 1
+  std::vector<double> volumes;  ///< m^3; empty once they are in the packs
+  std::vector<double> slips;    ///< 0 to 1; empty once they are in the packs
   std::vector<WallPack> packs;  ///< Positions relative to the origin.
   PointClusters clusters;       ///< Over the packs' positions.
   WallGuard guard;
