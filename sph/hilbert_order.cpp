@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 
+#include "sph/parallel.h"
+
 namespace flowskin::sph {
 
 std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z, int levels) {
@@ -52,7 +54,7 @@ void HilbertOrder::compute(std::span<const Eigen::Vector3f> points, float cell_s
   const float cells = std::min(extent / cell_size + 1, 2097151.0F);
   const int levels = std::max(1, static_cast<int>(std::bit_width(static_cast<std::uint32_t>(cells))));
   const float scale = (cells - 1) / extent;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(threads_for(count))
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3f cell = (points[i] - low) * scale;
     keys_[i] = hilbert_index(static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sph/parallel.h"
 #include "sph/simd.h"
 
 namespace flowskin::sph {
@@ -32,7 +33,7 @@ void NeighborLists::build(const PointClusters& targets, const PointClusters& sou
   blocks_.resize((targets.size() + clusters_per_block - 1) / clusters_per_block);
   // Everything below compares float distances; this much more makes sure that nothing within the radius is missed.
   const float padded = radius * (1 + 1e-5F);
-#pragma omp parallel
+#pragma omp parallel num_threads(threads_for(targets.point_count()))
   {
     std::vector<std::uint32_t> candidates;
 #pragma omp for schedule(dynamic)

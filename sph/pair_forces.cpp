@@ -7,6 +7,7 @@
 
 #include "sph/equation_of_state.h"
 #include "sph/kernels.h"
+#include "sph/parallel.h"
 
 namespace flowskin::sph {
 
@@ -70,10 +71,10 @@ struct Sums {
   Float8 fx{}, fy{}, fz{};  // friction on walls ...
   Float8 friction_rate{};   // ... and the rate (1/s) at which it would stop the particle
 
-  // Friction on walls is taken at the end of the step instead of its start (implicit Euler, with the rate as a scalar):
-  // it grows without limit as a particle comes close to a wall, and so can brake, but not throw back.
+  // The friction of a wall grows without limit as a particle comes close to it. Within one step it may stop the
+  // particle, but not throw it back: where it would, it is made smaller.
   void add_friction(float time_step) {
-    const Float8 share = broadcast(1.0F) / (broadcast(1.0F) + broadcast(time_step) * friction_rate);
+    const Float8 share = broadcast(1.0F) / max(broadcast(1.0F), broadcast(time_step) * friction_rate);
     ax += share * fx;
     ay += share * fy;
     az += share * fz;
@@ -170,7 +171,7 @@ template <typename Kernel, bool monaghan, bool continuity, bool with_xsph>
 void run_forces(const PairCoefficients& coefficients, const PairData& data) {
   const SplatCoefficients c(coefficients);
   const PointClusters& clusters = *data.clusters;
-#pragma omp parallel for schedule(dynamic, 32)
+#pragma omp parallel for schedule(dynamic, 32) num_threads(threads_for(data.fluid.size()))
   for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
     const Targets targets(&data.fluid[first], count);
@@ -200,7 +201,7 @@ template <typename Kernel>
 void run_densities(const PairCoefficients& coefficients, const PairData& data) {
   const SplatCoefficients c(coefficients);
   const PointClusters& clusters = *data.clusters;
-#pragma omp parallel for schedule(dynamic, 32)
+#pragma omp parallel for schedule(dynamic, 32) num_threads(threads_for(data.fluid.size()))
   for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
     const Targets i(&data.fluid[first], count);

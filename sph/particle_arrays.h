@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sph/pair_forces.h"
+#include "sph/parallel.h"
 #include "sph/particle_pack.h"
 #include "sph/solver.h"
 
@@ -71,7 +72,7 @@ struct ParticleArrays {
     scratch_.resize(std::max(scratch_.size(), order.size() * sizeof(T)));
     const char* from = reinterpret_cast<const char*>(values.data());
     char* to = scratch_.data();
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(threads_for(order.size()))
     for (std::size_t k = 0; k < order.size(); ++k) {
       std::memcpy(to + k * sizeof(T), from + order[k] * sizeof(T), sizeof(T));
     }

@@ -9,6 +9,7 @@
 
 #include "sph/boundary_sampling.h"
 #include "sph/fluid_bodies.h"
+#include "sph/parallel.h"
 #include "sph/setup_checks.h"
 
 namespace flowskin::sph {
@@ -194,7 +195,7 @@ void SolverImpl::kick_and_drift(double dt) {
   const Stopwatch watch(statistics_.seconds_integration);
   std::uint64_t crossings = 0;
   bool outside = false;
-#pragma omp parallel for schedule(static) reduction(+ : crossings) reduction(|| : outside)
+#pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size())) reduction(+ : crossings) reduction(|| : outside)
   for (std::size_t c = 0; c < clusters_.size(); ++c) {
     const PointCluster& cluster = clusters_[c];
     for (std::size_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
@@ -248,7 +249,7 @@ bool SolverImpl::lists_outdated() const {
     const FluidPack& p = particles_.packs[i];
     return Eigen::Vector3f(Eigen::Vector3f(p.x, p.y, p.z) - build_positions_[i]);
   };
-#pragma omp parallel
+#pragma omp parallel num_threads(threads_for(particles_.size()))
   {
     Eigen::Vector3f my_low = low, my_high = high;
 #pragma omp for schedule(static)
@@ -269,7 +270,9 @@ bool SolverImpl::lists_outdated() const {
   // The box of displacements is too coarse to tell: look at each.
   const Eigen::Vector3f common = 0.5F * (low + high);
   float relative2 = 0, absolute2 = 0;
-#pragma omp parallel for schedule(static) reduction(max : relative2, absolute2)
+#pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size())) \
+    reduction(max                                                                     \
+              : relative2, absolute2)
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const Eigen::Vector3f d = moved(i);
     relative2 = std::max(relative2, (d - common).squaredNorm());
@@ -284,7 +287,7 @@ void SolverImpl::rebuild_lists() {
   if (some_outside_) remove_outside();
   const auto refresh_positions = [&] {
     build_positions_.resize(particles_.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size()))
     for (std::size_t i = 0; i < particles_.size(); ++i) {
       const FluidPack& p = particles_.packs[i];
       build_positions_[i] = Eigen::Vector3f(p.x, p.y, p.z);
@@ -311,7 +314,7 @@ void SolverImpl::collect_wall_triangles() {
   wall_triangles_.resize(clusters_.size());
   // Up to the next rebuild no particle moves farther than the skin.
   const Vec3 margin = Vec3::Constant(1.1 * settings_.skin * settings_.spacing + 0.5 * settings_.spacing);
-#pragma omp parallel for schedule(dynamic, 64)
+#pragma omp parallel for schedule(dynamic, 64) num_threads(threads_for(particles_.size()))
   for (std::size_t c = 0; c < clusters_.size(); ++c) {
     wall_triangles_[c].clear();
     if (wall_lists_.of_cluster(c).empty()) continue;
@@ -337,7 +340,10 @@ void SolverImpl::finish_step(double dt) {
   double speed2 = 0, acceleration2 = 0;
   const double speed_limit2 = settings_.speed_of_sound * settings_.speed_of_sound;
   std::size_t worst = particles_.size();  // a particle beyond belief: the one with the lowest place in the arrays
-#pragma omp parallel for schedule(static) reduction(max : speed2, acceleration2) reduction(min : worst)
+#pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size())) \
+    reduction(max                                                                     \
+              : speed2, acceleration2) reduction(min                                  \
+                                                 : worst)
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const ParticleRates& rate = particles_.rates[i];
     const Vec3 acceleration = Vec3(rate.ax, rate.ay, rate.az) + settings_.gravity;

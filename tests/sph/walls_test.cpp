@@ -41,14 +41,16 @@ TEST(Walls, PressureAtTheBottomCarriesTheWeight) {
   setup.settings.viscosity = 0.02;
   setup.boundaries.push_back({closed_box({0, 0, 0}, {0.25, 0.7, 0.25}), 1});
   Solver solver(setup);
-  solver.advance_to(1);
-  const FluidState state = solver.state();
   const double c = solver.settings().speed_of_sound;
   double low = 0, low_count = 0;
-  for (std::size_t i = 0; i < state.ids.size(); ++i) {
-    if (std::abs(state.positions[i].y() - 0.1) > 0.05) continue;
-    low += state.densities[i] / 1000 - 1;
-    ++low_count;
+  for (int k = 0; k < 60; ++k) {  // mean over several periods of the sound that the sudden weight makes
+    solver.advance_to(0.3 + 0.007 * k);
+    const FluidState state = solver.state();
+    for (std::size_t i = 0; i < state.ids.size(); ++i) {
+      if (std::abs(state.positions[i].y() - 0.1) > 0.05) continue;
+      low += state.densities[i] / 1000 - 1;
+      ++low_count;
+    }
   }
   const double wanted = 9.81 * 0.39 / (c * c);
   EXPECT_NEAR(low / low_count, wanted, 0.15 * wanted);
