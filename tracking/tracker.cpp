@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kDefaultEdgeInSpacings = 0.8;
 constexpr int kMostSubsteps = 1000;
+constexpr int kUntanglingRounds = 4;
 
 // Adds the time until its end to a sum.
 class Stopwatch {
@@ -118,7 +119,6 @@ class TrackerImpl {
     const Projection projection = project_to_surface(*field_, default_projection(settings_.field), positions);
     MaterialSettings material;
     material.reach = settings_.edge_length;
-    material.same_material = 3 * settings_.spacing;
     material.same_vertex = settings_.edge_length / 3;
     mesh_ = carry_material(mesh_, geometry, projection.normals, *field_, particles_, material);
     topology_ = build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
@@ -186,10 +186,33 @@ class TrackerImpl {
     }
     Stopwatch watch(report_.seconds_fairing);
     repair(*field_, default_projection(settings_.field), topology_, mesh_.triangles, mesh_.positions, projection);
+    if (settings_.remeshing) untangle(projection);
     return projection;
   }
 
-  // Edges near their target length; the springs of edges that stay keep their rest lengths.
+  // Where relaxing a tangle does not help, its edges are collapsed.
+  void untangle(Projection& projection) {
+    for (int round = 0; round < kUntanglingRounds; ++round) {
+      const std::vector<int> bad = bad_triangles(mesh_.positions, mesh_.triangles, topology_, projection.normals);
+      if (bad.empty()) return;
+      const std::vector<std::uint64_t> old_ids = mesh_.ids;
+      const int collapses = collapse_triangles(bad, projection.normals, 2 * settings_.edge_length, mesh_);
+      if (collapses == 0) return;
+      report_.collapses += collapses;
+      update_topology(old_ids);
+      projection = project_to_surface(*field_, default_projection(settings_.field), mesh_.positions);
+      repair(*field_, default_projection(settings_.field), topology_, mesh_.triangles, mesh_.positions, projection);
+    }
+  }
+
+  // After a change of the triangles; the springs of edges that stay keep their rest lengths.
+  void update_topology(const std::vector<std::uint64_t>& old_ids) {
+    const MeshTopology old_topology =
+        std::exchange(topology_, build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles));
+    rest_lengths_ = carry_rest_lengths(old_ids, old_topology, rest_lengths_, mesh_, topology_, settings_.edge_length);
+  }
+
+  // Brings edges near their target length.
   void remesh_surface() {
     const std::vector<std::uint64_t> old_ids = mesh_.ids;
     RemeshSettings limits;
@@ -198,10 +221,7 @@ class TrackerImpl {
     report_.splits = done.splits;
     report_.collapses = done.collapses;
     report_.flips = done.flips;
-    if (!done.changed()) return;
-    const MeshTopology old_topology =
-        std::exchange(topology_, build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles));
-    rest_lengths_ = carry_rest_lengths(old_ids, old_topology, rest_lengths_, mesh_, topology_, settings_.edge_length);
+    if (done.changed()) update_topology(old_ids);
   }
 
   // Replaces a mesh that does not fit the field any more.

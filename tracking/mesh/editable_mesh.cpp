@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kLargestTurn = 0.5;  // cosine of 60 degrees
 constexpr double kSliver = 0.15;      // shape() of a triangle not to be made
+constexpr double kNeedle = 0.02;      // shape() below which a triangle's normal says nothing
+constexpr double kSameSide = 0.3;     // cosine between a triangle and the surface where they agree
 constexpr double kTinyEdge = 0.15;    // of the longest edge
 constexpr double kFlat = 0.8;         // cosine of the largest angle between triangles whose edge may be flipped
 
@@ -102,7 +104,28 @@ bool EditableMesh::collapse_keeps_shape(int kept, int removed, double longest_ed
   return true;
 }
 
-bool EditableMesh::collapse(int kept, int removed, double longest_edge) {
+bool EditableMesh::collapse_keeps_side(int kept, int removed, double longest_edge,
+                                       const std::vector<Vec3>& normals) const {
+  for (int t : stars_[removed]) {
+    if (contains(triangles_[t], kept)) continue;
+    std::array<Vec3, 3> before, after;
+    Vec3 side = Vec3::Zero();
+    for (int corner = 0; corner < 3; ++corner) {
+      const int vertex = triangles_[t][corner];
+      before[corner] = positions_[vertex];
+      after[corner] = vertex == removed ? positions_[kept] : before[corner];
+      side += normals[vertex == removed ? kept : vertex];
+      if (vertex != removed && (positions_[vertex] - positions_[kept]).norm() > longest_edge) return false;
+    }
+    const auto agrees = [&](const std::array<Vec3, 3>& x) {
+      return shape(x[0], x[1], x[2]) > kNeedle && unit_normal(x[0], x[1], x[2]).dot(side.normalized()) > kSameSide;
+    };
+    if (agrees(before) && !agrees(after)) return false;
+  }
+  return true;
+}
+
+bool EditableMesh::may_collapse(int kept, int removed) const {
   if (kept == removed || !alive(kept) || !alive(removed)) return false;
   std::array<int, 2> triangles{}, opposite{};
   if (!wings(kept, removed, triangles, opposite)) return false;
@@ -111,9 +134,12 @@ bool EditableMesh::collapse(int kept, int removed, double longest_edge) {
   std::set_intersection(kept_ring.begin(), kept_ring.end(), removed_ring.begin(), removed_ring.end(),
                         std::back_inserter(common));
   // Two common neighbours, and more than a tetrahedron: then the links meet in the link of the edge only.
-  if (common.size() != 2 || ring(opposite[0]).size() <= 3 || ring(opposite[1]).size() <= 3) return false;
-  if (!collapse_keeps_shape(kept, removed, longest_edge)) return false;
+  return common.size() == 2 && ring(opposite[0]).size() > 3 && ring(opposite[1]).size() > 3;
+}
 
+void EditableMesh::merge(int kept, int removed) {
+  std::array<int, 2> triangles{}, opposite{};
+  wings(kept, removed, triangles, opposite);
   for (int t : triangles) {
     for (int vertex : triangles_[t]) std::erase(stars_[vertex], t);
     triangles_[t] = {-1, -1, -1};
@@ -123,6 +149,17 @@ bool EditableMesh::collapse(int kept, int removed, double longest_edge) {
     stars_[kept].push_back(t);
   }
   stars_[removed].clear();
+}
+
+bool EditableMesh::collapse(int kept, int removed, double longest_edge) {
+  if (!may_collapse(kept, removed) || !collapse_keeps_shape(kept, removed, longest_edge)) return false;
+  merge(kept, removed);
+  return true;
+}
+
+bool EditableMesh::collapse_tangled(int kept, int removed, double longest_edge, const std::vector<Vec3>& normals) {
+  if (!may_collapse(kept, removed) || !collapse_keeps_side(kept, removed, longest_edge, normals)) return false;
+  merge(kept, removed);
   return true;
 }
 

@@ -18,6 +18,10 @@ class EditableMesh {
   /// more than 60 degrees or become a sliver, or where an edge would grow beyond `longest_edge` (m).
   bool collapse(int kept, int removed, double longest_edge);
 
+  /// The same in a tangle, where triangles do not know how they should look: refused where a triangle that agreed with
+  /// the surface's outward normals (one a vertex) would no longer do so.
+  bool collapse_tangled(int kept, int removed, double longest_edge, const std::vector<Vec3>& normals);
+
   /// Puts a new vertex, the last one, in the middle of edge ab and returns its index; -1 where there is no such edge.
   int split(int a, int b);
 
@@ -42,6 +46,11 @@ class EditableMesh {
   bool wings(int a, int b, std::array<int, 2>& triangles, std::array<int, 2>& opposite) const;
   Vec3 star_normal(int vertex) const;
   bool collapse_keeps_shape(int kept, int removed, double longest_edge) const;
+  bool collapse_keeps_side(int kept, int removed, double longest_edge, const std::vector<Vec3>& normals) const;
+  /// True where the link condition holds: the mesh stays two-manifold.
+  bool may_collapse(int kept, int removed) const;
+  /// @pre may_collapse
+  void merge(int kept, int removed);
 
   std::vector<Vec3>& positions_;
   std::vector<Triangle>& triangles_;

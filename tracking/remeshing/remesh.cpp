@@ -61,6 +61,14 @@ void renumber(const std::vector<int>& number, std::size_t count, std::vector<T>&
   values.resize(count);
 }
 
+// Drops the removed vertices with all their attributes.
+void compact(EditableMesh& editable, SurfaceMesh& mesh) {
+  const std::vector<int> number = editable.compact();
+  renumber(number, mesh.positions.size(), mesh.rest_positions);
+  renumber(number, mesh.positions.size(), mesh.velocities);
+  renumber(number, mesh.positions.size(), mesh.ids);
+}
+
 int collapse_short_edges(double shortest, double longest, SurfaceMesh& mesh) {
   const auto edges = edges_by_length(
       mesh, [&](double length) { return length < shortest; }, false);
@@ -73,10 +81,7 @@ int collapse_short_edges(double shortest, double longest, SurfaceMesh& mesh) {
     const int older = low_is_older ? low : high, younger = low_is_older ? high : low;
     count += editable.collapse(older, younger, longest) || editable.collapse(younger, older, longest);
   }
-  const std::vector<int> number = editable.compact();
-  renumber(number, mesh.positions.size(), mesh.rest_positions);
-  renumber(number, mesh.positions.size(), mesh.velocities);
-  renumber(number, mesh.positions.size(), mesh.ids);
+  compact(editable, mesh);
   return count;
 }
 
@@ -97,6 +102,27 @@ RemeshReport remesh(const MetaballField& field, const RemeshSettings& settings, 
   report.collapses = collapse_short_edges(settings.shortest * settings.edge_length, longest, mesh);
   report.flips = flip_bad_edges(settings.delaunay_slack, mesh);
   return report;
+}
+
+int collapse_triangles(const std::vector<int>& triangles, const std::vector<Vec3>& normals, double longest,
+                       SurfaceMesh& mesh) {
+  const std::vector<Triangle> before = mesh.triangles;
+  EditableMesh editable(mesh.positions, mesh.triangles);
+  int count = 0;
+  for (int t : triangles) {
+    std::array<Edge, 3> edges;
+    for (std::size_t corner = 0; corner < 3; ++corner) edges[corner] = {before[t][corner], before[t][(corner + 1) % 3]};
+    const auto length = [&](const Edge& e) { return (mesh.positions[e[0]] - mesh.positions[e[1]]).norm(); };
+    std::stable_sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return length(a) < length(b); });
+    for (const auto& [a, b] : edges) {
+      if (!editable.collapse_tangled(a, b, longest, normals) && !editable.collapse_tangled(b, a, longest, normals))
+        continue;
+      ++count;
+      break;
+    }
+  }
+  compact(editable, mesh);
+  return count;
 }
 
 std::vector<double> carry_rest_lengths(const std::vector<std::uint64_t>& old_ids, const MeshTopology& old_topology,

@@ -98,15 +98,16 @@ SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& g
   const ClosestPointTree tree(old_mesh.positions, old_mesh.triangles);
 #pragma omp parallel for schedule(dynamic, 256)
   for (int v = 0; v < count; ++v) {
-    const Vec3 beneath = rest_position_at(field, particles, mesh.positions[v]);
-    mesh.rest_positions[v] = beneath;
     const MeshPoint point = tree.closest(mesh.positions[v], settings.reach, normals[v], kSameSide);
-    if (point.triangle < 0) continue;
+    if (point.triangle < 0) {
+      mesh.rest_positions[v] = rest_position_at(field, particles, mesh.positions[v]);
+      continue;
+    }
     Vec3 rest = Vec3::Zero();
     for (int corner = 0; corner < 3; ++corner) {
       rest += point.weights[corner] * old_mesh.rest_positions[old_mesh.triangles[point.triangle][corner]];
     }
-    if ((rest - beneath).norm() <= settings.same_material) mesh.rest_positions[v] = rest;
+    mesh.rest_positions[v] = rest;
   }
 
   const std::vector<int> old_of_new = nearest(old_mesh.positions, mesh.positions, settings.same_vertex);

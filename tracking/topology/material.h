@@ -20,15 +20,14 @@ Vec3 rest_position_at(const MetaballField& field, const Particles& particles, co
 
 /// How an old mesh hands its material over; lengths in metres.
 struct MaterialSettings {
-  double reach = 0;          ///< Farthest distance to the old mesh.
-  double same_material = 0;  ///< Farthest distance of its rest position from that of the particles beneath.
-  double same_vertex = 0;    ///< Old and new vertex may be the same one within this distance.
+  double reach = 0;        ///< Farthest distance to the old mesh.
+  double same_vertex = 0;  ///< Old and new vertex may be the same one within this distance.
 };
 
 /// A mesh of fresh geometry with its attributes: the rest position of the closest point of the old mesh that looks the
-/// same way, interpolated once over its triangle; where there is none, or where it is other material, that of the
-/// particles beneath. A vertex keeps the id of an old one where each is the other's nearest; all others get new ids.
-/// Velocities are zero.
+/// same way, interpolated once over its triangle; where there is none, that of the particles beneath. The old mesh is
+/// preferred even where the particles have come to disagree with it: two truths side by side would tear the texture. A
+/// vertex keeps the id of an old one where each is the other's nearest; all others get new ids. Velocities are zero.
 /// @param old_mesh at the time of the field; may be empty
 /// @param normals outward normals of the geometry's vertices
 SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& geometry,
