@@ -61,13 +61,14 @@ struct TrackingSpec {
   bool enabled = true;
   std::string velocity = "curvature";
   std::string integrator = "rk2";  ///< euler, rk2, rk4
-  int steps_per_frame = 4;         ///< Particle states between two frames, one tracker step each.
+  int steps_per_frame = 2;         ///< Particle states between two frames, one tracker step each.
   double max_motion = 0.25;        ///< in effective radii
   double radius = 2.5;             ///< Effective radius of a particle, in spacings.
   double threshold = 0;            ///< 0: the one that puts a flat surface half a spacing outside the particles
-  double edge_length = 0.8;        ///< Edge length of an extracted mesh, in spacings.
+  double edge_length = 0.75;       ///< Edge length of an extracted mesh, in spacings.
   int fairing_iterations = 10;
   double fairing_stiffness = 0.3;  ///< 0 to 1
+  bool remeshing = true;           ///< Split, collapse and flip edges of a stretching surface.
   bool guard = true;
 };
 

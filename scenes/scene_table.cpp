@@ -244,6 +244,9 @@ Table<Scene> tracking_keys(const SceneVocabulary& vocabulary) {
              "Iterations of fairing a step."),
       key<S>("tracking.fairing_stiffness", at(tracking, &T::fairing_stiffness), number(at_least(0, 1)), "",
              "Share of the way to the equilibrium of the springs that an iteration goes."),
+      key<S>("tracking.remeshing", at(tracking, &T::remeshing), boolean(), "",
+             "Split, collapse and flip edges of a stretching surface; false: a mesh of constant triangles, as in the "
+             "paper."),
       key<S>("tracking.guard", at(tracking, &T::guard), boolean(), "",
              "Replace a mesh that no longer fits the particles by a fresh one."),
   };

@@ -44,6 +44,9 @@ void NeighborLists::build(const PointClusters& targets, const PointClusters& sou
       for (std::size_t c = block * clusters_per_block; c < end; ++c) {
         const std::size_t begin = entries.size();
         sources.query(targets[c].box_min, targets[c].box_max, padded, candidates);
+        // Room for all of them, growing by a quarter: doubling would waste a third of the memory.
+        const std::size_t most = begin + candidates.size() * PointCluster::width;
+        if (most > entries.capacity()) entries.reserve(most + most / 4);
         for (const std::uint32_t s : candidates) {
           append_near(targets.lanes(c), targets[c].count, sources.lanes(s), sources[s], padded * padded, entries);
         }

@@ -39,6 +39,11 @@ struct ParticleArrays {
     if (with_shift) shifts.push_back(Eigen::Vector3f::Zero());
   }
 
+  void reserve(std::size_t count, bool with_shifts) {
+    for_each([&](auto& values) { values.reserve(count); });
+    if (!with_shifts) shifts = {};
+  }
+
   /// Keeps the particles order[0], order[1], ... in this order and drops the others.
   void rearrange(const std::vector<std::uint32_t>& order) {
     for_each([&](auto& values) {

@@ -85,6 +85,7 @@ SolverImpl::SolverImpl(SimulationSetup setup) : settings_((check_setup(setup), s
     emitters_.emplace_back(setup.emitters[e], settings_.spacing, "emitter " + std::to_string(e + 1));
   }
 
+  particles_.reserve(points.size(), settings_.xsph > 0);
   for (const FluidPoint& p : points) {
     particles_.append(next_id_++, p.position, p.velocity, p.position, settings_.xsph > 0);
   }

@@ -21,7 +21,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kDefaultEdgeInSpacings = 0.8;
+constexpr double kDefaultEdgeInSpacings = 0.75;
 constexpr int kMostSubsteps = 1000;
 constexpr int kUntanglingRounds = 4;
 
@@ -48,7 +48,7 @@ void require(bool condition, const std::string& name, double value, const std::s
 TrackerSettings filled_in(TrackerSettings settings) {
   require(std::isfinite(settings.spacing) && settings.spacing > 0, "spacing", settings.spacing, "positive (m)");
   require(std::isfinite(settings.edge_length) && settings.edge_length >= 0, "edge_length", settings.edge_length,
-          "positive (m), or 0 for 0.8 spacings");
+          "positive (m), or 0 for 0.75 spacings");
   require(settings.max_motion > 0, "max_motion", settings.max_motion, "positive (effective radii)");
   require(settings.fairing_iterations >= 0, "fairing_iterations", settings.fairing_iterations, "0 or more");
   require(settings.fairing_stiffness >= 0 && settings.fairing_stiffness <= 1, "fairing_stiffness",

@@ -19,7 +19,7 @@ struct TrackerSettings {
   std::string velocity = "curvature";
   Integrator integrator = Integrator::rk2;
   double max_motion = 0.25;        ///< A substep moves no particle further than this share of the effective radius.
-  double edge_length = 0;          ///< Edge length of an extracted mesh (m); 0: 0.8 spacings.
+  double edge_length = 0;          ///< Edge length of an extracted mesh (m); 0: 0.75 spacings.
   int fairing_iterations = 10;     ///< [FMM13, 3.4]
   double fairing_stiffness = 0.3;  ///< Share of the way to the spring equilibrium an iteration goes, 0 to 1.
   bool remeshing = true;           ///< Split, collapse and flip edges of a stretching mesh; false: as in the paper.

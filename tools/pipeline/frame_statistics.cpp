@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "tools/pipeline/tracker_bridge.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/texture_stretch.h"
+#include "tracking/topology/material.h"
 
 namespace flowskin::tools {
 
@@ -58,6 +61,9 @@ int count_common(const std::vector<std::uint64_t>& a, const std::vector<std::uin
 
 void FrameStatistics::add(const tracking::TrackerReport& report) {
   substeps_ += report.substeps;
+  splits_ += report.splits;
+  collapses_ += report.collapses;
+  flips_ += report.flips;
   seconds_guard_ += report.seconds_guard;
   if (!report.reextracted) return;
   ++reextractions_;
@@ -78,12 +84,20 @@ FrameRow FrameStatistics::finish_frame(int frame, const scenes::ParticleSource& 
     row.area = report.area;
     row.max_distance = report.max_distance;
     describe_surface(surface->mesh, row);
+    if (row.vertices > 0 && row.particles > 0) {
+      const tracking::Particles particles = to_particles(source.state());
+      const tracking::MetaballField field(particles.positions, {}, tracker->settings().field);
+      row.texture_drift = quantile(tracking::material_drift(surface->mesh, field, particles), 0.5);
+    }
     std::vector<std::uint64_t> ids = surface->mesh.ids;
     std::sort(ids.begin(), ids.end());
     row.kept_ids = count_common(ids, previous_ids_);
     previous_ids_ = std::move(ids);
   }
   row.substeps = substeps_;
+  row.splits = std::exchange(splits_, 0);
+  row.collapses = std::exchange(collapses_, 0);
+  row.flips = std::exchange(flips_, 0);
   row.reextractions = reextractions_;
   row.seconds_guard = seconds_guard_;
   frames_reextracted_ += reextractions_ > 0;

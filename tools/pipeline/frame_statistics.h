@@ -26,6 +26,7 @@ class FrameStatistics {
 
  private:
   int substeps_ = 0, reextractions_ = 0, frames_reextracted_ = 0;
+  int splits_ = 0, collapses_ = 0, flips_ = 0;
   double seconds_guard_ = 0;
   std::string last_reason_;
   std::vector<std::uint64_t> previous_ids_;  // ascending

@@ -5,7 +5,6 @@
 namespace flowskin::tools {
 
 namespace {
-constexpr const char* kTextureFile = "texture.png";
 constexpr const char* kMaterialFile = "surface.mtl";
 }  // namespace
 

@@ -14,6 +14,9 @@ namespace flowskin::tools {
 
 class FrameWriter {
  public:
+  /// Name of the texture in surface/.
+  static constexpr const char* kTextureFile = "texture.png";
+
   /// Writes the texture and the material that all frames share. @throws RunError
   FrameWriter(const RunDirectory& directory, const scenes::OutputSpec& formats, const Image& texture);
 

@@ -118,7 +118,10 @@ void SceneRun::record(int frame) {
   const double time = frame / scene_.frame_rate;
   const ParticleFrame particles = dress(state, source_->spacing(), rest_);
   std::unique_ptr<SurfaceFrame> surface;
-  if (tracker_) surface = std::make_unique<SurfaceFrame>(dress(tracker_->mesh(), time, scene_.texture, rest_));
+  if (tracker_) {
+    surface = std::make_unique<SurfaceFrame>(dress(tracker_->mesh(), time, scene_.texture, rest_));
+    surface->texture_file = FrameWriter::kTextureFile;
+  }
   clock_.time("writing", [&] {
     writer_->write(frame, particles);
     if (surface) writer_->write(frame, *surface);

@@ -21,6 +21,7 @@ tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
   settings.edge_length = spec.edge_length * spacing;
   settings.fairing_iterations = spec.fairing_iterations;
   settings.fairing_stiffness = spec.fairing_stiffness;
+  settings.remeshing = spec.remeshing;
   settings.guard = spec.guard;
   return settings;
 }

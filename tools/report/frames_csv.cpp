@@ -32,6 +32,9 @@ void for_each_column(const FrameRow& row, Visit visit) {
   visit("stretch_p99", row.stretch_p99);
   visit("texture_drift", row.texture_drift);
   visit("substeps", row.substeps);
+  visit("splits", row.splits);
+  visit("collapses", row.collapses);
+  visit("flips", row.flips);
   visit("reextractions", row.reextractions);
   visit("kept_ids", row.kept_ids);
   visit("steps", row.steps);

@@ -22,10 +22,11 @@ struct FrameRow {
   double stretch_median = 0, stretch_p99 = 0;       ///< larger singular value of the map from rest to present
   double texture_drift = 0;  ///< m: median distance between the rest positions of surface and particles beneath
   int substeps = 0;
-  int reextractions = 0;    ///< how often the guard replaced the mesh in this frame
-  int kept_ids = 0;         ///< vertices that were there in the frame before
-  std::uint64_t steps = 0;  ///< solver steps since the start
-  double time_step = 0;     ///< s, the last one
+  int splits = 0, collapses = 0, flips = 0;  ///< of the remeshing
+  int reextractions = 0;                     ///< how often the guard replaced the mesh in this frame
+  int kept_ids = 0;                          ///< vertices that were there in the frame before
+  std::uint64_t steps = 0;                   ///< solver steps since the start
+  double time_step = 0;                      ///< s, the last one
   double mean_density_error = 0, max_density_error = 0;
   std::uint64_t left_domain = 0, wall_crossings = 0;  ///< since the start
   double seconds_source = 0, seconds_tracking = 0, seconds_guard = 0, seconds_writing = 0, seconds_pictures = 0;

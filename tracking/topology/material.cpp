@@ -83,6 +83,15 @@ Vec3 rest_position_at(const MetaballField& field, const Particles& particles, co
   return x + (moments.ldlt().solve(sums)).row(0).transpose();
 }
 
+std::vector<double> material_drift(const SurfaceMesh& mesh, const MetaballField& field, const Particles& particles) {
+  std::vector<double> drift(mesh.positions.size());
+#pragma omp parallel for schedule(dynamic, 256)
+  for (int v = 0; v < static_cast<int>(drift.size()); ++v) {
+    drift[v] = (rest_position_at(field, particles, mesh.positions[v]) - mesh.rest_positions[v]).norm();
+  }
+  return drift;
+}
+
 SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& geometry,
                            const std::vector<Vec3>& normals, const MetaballField& field, const Particles& particles,
                            const MaterialSettings& settings) {

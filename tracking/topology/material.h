@@ -18,6 +18,10 @@ namespace flowskin::tracking {
 /// @pre There is at least one particle.
 Vec3 rest_position_at(const MetaballField& field, const Particles& particles, const Vec3& x);
 
+/// Distance between the rest position that each vertex carries and that of the particles beneath it (m): how far the
+/// texture has drifted off its material.
+std::vector<double> material_drift(const SurfaceMesh& mesh, const MetaballField& field, const Particles& particles);
+
 /// How an old mesh hands its material over; lengths in metres.
 struct MaterialSettings {
   double reach = 0;        ///< Farthest distance to the old mesh.
