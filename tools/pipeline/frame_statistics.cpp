@@ -99,7 +99,7 @@ FrameRow FrameStatistics::finish_frame(int frame, const scenes::ParticleSource& 
   row.collapses = std::exchange(collapses_, 0);
   row.flips = std::exchange(flips_, 0);
   row.reextractions = reextractions_;
-  row.seconds_guard = seconds_guard_;
+  row.seconds_guard = std::exchange(seconds_guard_, 0);
   frames_reextracted_ += reextractions_ > 0;
   substeps_ = reextractions_ = 0;
   return row;

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <map>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include "scenes/scene_file.h"
 #include "scenes/sources/make_source.h"
@@ -42,7 +45,7 @@ class SceneRun {
   void run();
 
  private:
-  void describe() const;
+  void describe();
   void advance(int frame);
   void record(int frame);
   void write_row(int frame, const SurfaceFrame* surface);
@@ -61,6 +64,7 @@ class SceneRun {
   std::unique_ptr<PictureMaker> pictures_;
   FrameStatistics statistics_;
   std::vector<FrameRow> rows_;
+  std::map<std::string, double> booked_;  // seconds of each stage up to the last row
 };
 
 SceneRun::SceneRun(const RunOptions& options, scenes::Scene scene, const RunDirectory& directory)
@@ -87,11 +91,10 @@ SceneRun::SceneRun(const RunOptions& options, scenes::Scene scene, const RunDire
     pictures_ = std::make_unique<PictureMaker>(directory_, scene_, texture_, bounds(start.positions));
 }
 
-void SceneRun::describe() const {
-  auto& log = const_cast<RunLog&>(log_);
-  log.info(fmt::format("scene {}: {} frames at {} per second, {} particles, {} thread(s)", scene_.name, scene_.frames,
-                       scene_.frame_rate, source_->state().positions.size(), omp_get_max_threads()));
-  if (const auto summary = source_->statistics().summary; !summary.empty()) log.info("particles: " + summary);
+void SceneRun::describe() {
+  log_.info(fmt::format("scene {}: {} frames at {} per second, {} particles, {} thread(s)", scene_.name, scene_.frames,
+                        scene_.frame_rate, source_->state().positions.size(), omp_get_max_threads()));
+  if (const auto summary = source_->statistics().summary; !summary.empty()) log_.info("particles: " + summary);
   if (tracker_) {
     const tracking::TrackerSettings& settings = tracker_->settings();
     log.info(fmt::format(
@@ -138,10 +141,14 @@ void SceneRun::record(int frame) {
 void SceneRun::write_row(int frame, const SurfaceFrame* surface) {
   FrameRow row =
       clock_.time("statistics", [&] { return statistics_.finish_frame(frame, *source_, tracker_.get(), surface); });
-  row.seconds_source = clock_.seconds("source");
-  row.seconds_tracking = clock_.seconds("tracking");
-  row.seconds_writing = clock_.seconds("writing");
-  row.seconds_pictures = clock_.seconds("pictures");
+  const auto since_last_row = [&](const char* stage) {
+    const double total = clock_.seconds(stage);
+    return total - std::exchange(booked_[stage], total);
+  };
+  row.seconds_source = since_last_row("source");
+  row.seconds_tracking = since_last_row("tracking");
+  row.seconds_writing = since_last_row("writing");
+  row.seconds_pictures = since_last_row("pictures");
   rows_.push_back(row);
   write_frames_csv(directory_.frames_csv(), rows_);
   if (row.reextractions > 0)
