@@ -97,7 +97,7 @@ void SceneRun::describe() {
   if (const auto summary = source_->statistics().summary; !summary.empty()) log_.info("particles: " + summary);
   if (tracker_) {
     const tracking::TrackerSettings& settings = tracker_->settings();
-    log.info(fmt::format(
+    log_.info(fmt::format(
         "surface: {} vertices, velocity {}, {}, effective radius {:.4g} m, threshold {:.4g}, edge {:.4g} m, {} "
         "fairing iterations",
         tracker_->mesh().positions.size(), settings.velocity, scene_.tracking.integrator, settings.field.radius,
