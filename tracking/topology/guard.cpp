@@ -11,7 +11,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kFoldedCosine = -0.8;  // neighbouring triangles with an inner angle below 37 degrees
+constexpr double kFoldedCosine = -0.93;  // neighbouring triangles with an inner angle below 21 degrees
 constexpr double kLeastShape = 1e-3;    // doubled area over the longest squared side
 // A few places of a large mesh may cut a crease or miss a bump finer than an edge, until fairing and remeshing reach
 // them: no reason to give up the whole mesh. One place in so many is let pass.
