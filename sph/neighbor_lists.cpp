@@ -26,6 +26,21 @@ void append_near(const PointClusters::Lanes& target, std::uint32_t target_count,
   }
 }
 
+// Appends the list of one cluster of targets, out of candidate clusters of sources.
+void append_lists(const PointClusters& targets, std::size_t target, const PointClusters& sources,
+                  const std::vector<std::uint32_t>& candidates, float squared_radius,
+                  std::vector<std::uint32_t>& entries) {
+  const PointCluster& cluster = targets[target];
+  for (const std::uint32_t s : candidates) {
+    if (sources[s].squared_distance(cluster.box_min, cluster.box_max) > squared_radius) continue;
+    // Grows by a quarter: doubling would waste a third of the memory.
+    if (entries.size() + PointCluster::width > entries.capacity()) {
+      entries.reserve(entries.capacity() + entries.capacity() / 4 + 256);
+    }
+    append_near(targets.lanes(target), cluster.count, sources.lanes(s), sources[s], squared_radius, entries);
+  }
+}
+
 }  // namespace
 
 void NeighborLists::build(const PointClusters& targets, const PointClusters& sources, float radius) {
@@ -41,16 +56,19 @@ void NeighborLists::build(const PointClusters& targets, const PointClusters& sou
       std::vector<std::uint32_t>& entries = blocks_[block];
       entries.clear();
       const std::size_t end = std::min(targets.size(), (block + 1) * clusters_per_block);
-      for (std::size_t c = block * clusters_per_block; c < end; ++c) {
-        const std::size_t begin = entries.size();
-        sources.query(targets[c].box_min, targets[c].box_max, padded, candidates);
-        // Room for all of them, growing by a quarter: doubling would waste a third of the memory.
-        const std::size_t most = begin + candidates.size() * PointCluster::width;
-        if (most > entries.capacity()) entries.reserve(most + most / 4);
-        for (const std::uint32_t s : candidates) {
-          append_near(targets.lanes(c), targets[c].count, sources.lanes(s), sources[s], padded * padded, entries);
+      for (std::size_t first = block * clusters_per_block; first < end; first += clusters_per_query) {
+        const std::size_t last = std::min(end, first + clusters_per_query);
+        Eigen::Vector3f low = targets[first].box_min, high = targets[first].box_max;
+        for (std::size_t c = first; c < last; ++c) {
+          low = low.cwiseMin(targets[c].box_min);
+          high = high.cwiseMax(targets[c].box_max);
         }
-        ranges_[c] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(entries.size() - begin)};
+        sources.query(low, high, padded, candidates);
+        for (std::size_t c = first; c < last; ++c) {
+          const std::size_t begin = entries.size();
+          append_lists(targets, c, sources, candidates, padded * padded, entries);
+          ranges_[c] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(entries.size() - begin)};
+        }
       }
     }
   }

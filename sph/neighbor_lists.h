@@ -11,8 +11,8 @@
 namespace flowskin::sph {
 
 /// Lists of single sources for clusters of targets: every source within `radius` of any point of the cluster, in
-/// ascending order. The search goes through PointClusters' kd-tree (nanoflann), one query a cluster; the exact distance
-/// test is done eight points at a time.
+/// ascending order. The search goes through PointClusters' kd-tree (nanoflann), one query for several clusters; the
+/// exact distance test is done eight points at a time.
 class NeighborLists {
  public:
   /// Builds the lists anew, in parallel; the result does not depend on the number of threads. `targets` and `sources`
@@ -31,6 +31,7 @@ class NeighborLists {
 
  private:
   static constexpr std::size_t clusters_per_block = 64;
+  static constexpr std::size_t clusters_per_query = 8;  // consecutive clusters are close: one kd-tree query for all
   struct Range {
     std::uint32_t begin = 0, count = 0;
   };

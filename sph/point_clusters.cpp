@@ -43,13 +43,6 @@ class IndexCollector {
   std::vector<std::uint32_t>& found_;
 };
 
-float squared_box_distance(const PointCluster& cluster, const Eigen::Vector3f& box_min,
-                           const Eigen::Vector3f& box_max) {
-  const Eigen::Vector3f gap =
-      (cluster.box_min - box_max).cwiseMax(box_min - cluster.box_max).cwiseMax(Eigen::Vector3f::Zero());
-  return gap.squaredNorm();
-}
-
 }  // namespace
 
 struct PointClusters::Tree {
@@ -110,7 +103,7 @@ void PointClusters::query(const Eigen::Vector3f& box_min, const Eigen::Vector3f&
   tree_->index.findNeighbors(collector, center.data(), nanoflann::SearchParams());
   const float squared_radius = radius * radius;
   std::erase_if(found,
-                [&](std::uint32_t c) { return squared_box_distance(clusters_[c], box_min, box_max) > squared_radius; });
+                [&](std::uint32_t c) { return clusters_[c].squared_distance(box_min, box_max) > squared_radius; });
   std::sort(found.begin(), found.end());
 }
 

@@ -17,7 +17,11 @@ struct PointCluster {
   std::uint32_t count = 0;  ///< 1 to width
   Eigen::Vector3f box_min, box_max;
 
-  Eigen::Vector3f center() const { return 0.5F * (box_min + box_max); }
+  /// Squared distance from this cluster's box to another box; 0 where they touch.
+  float squared_distance(const Eigen::Vector3f& other_min, const Eigen::Vector3f& other_max) const {
+    const Eigen::Vector3f gap = (box_min - other_max).cwiseMax(other_min - box_max).cwiseMax(Eigen::Vector3f::Zero());
+    return gap.squaredNorm();
+  }
 };
 
 /// Splits points, given in the order of a space-filling curve, into clusters of at most eight consecutive points.
