@@ -167,11 +167,18 @@ inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPac
   }
 }
 
+// Clusters that a thread takes at a time: few large pieces of the curve, so that threads seldom read what another one
+// has just written, but enough of them to even out the work.
+int piece_of(std::size_t clusters) {
+  return static_cast<int>(1 + clusters / (10 * static_cast<std::size_t>(omp_get_max_threads())));
+}
+
 template <typename Kernel, bool monaghan, bool continuity, bool with_xsph>
 void run_forces(const PairCoefficients& coefficients, const PairData& data) {
   const SplatCoefficients c(coefficients);
   const PointClusters& clusters = *data.clusters;
-#pragma omp parallel for schedule(dynamic, 32) num_threads(threads_for(data.fluid.size()))
+  const int piece = piece_of(clusters.size());
+#pragma omp parallel for schedule(dynamic, piece) num_threads(threads_for(data.fluid.size()))
   for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
     const Targets targets(&data.fluid[first], count);
@@ -201,7 +208,8 @@ template <typename Kernel>
 void run_densities(const PairCoefficients& coefficients, const PairData& data) {
   const SplatCoefficients c(coefficients);
   const PointClusters& clusters = *data.clusters;
-#pragma omp parallel for schedule(dynamic, 32) num_threads(threads_for(data.fluid.size()))
+  const int piece = piece_of(clusters.size());
+#pragma omp parallel for schedule(dynamic, piece) num_threads(threads_for(data.fluid.size()))
   for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
     const Targets i(&data.fluid[first], count);

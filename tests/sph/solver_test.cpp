@@ -40,7 +40,7 @@ TEST(Solver, SameBytesAtAnyNumberOfThreads) {
   for (const int count : {1, 2}) {
     omp_set_num_threads(count);
     Solver solver(busy_setup());
-    solver.advance_to(0.12);
+    solver.advance_to(0.06);
     states.push_back(solver.state());
   }
   omp_set_num_threads(threads);
