@@ -17,6 +17,7 @@
 #include "tracking/remeshing/remesh.h"
 #include "tracking/topology/guard.h"
 #include "tracking/topology/material.h"
+#include "tracking/topology/small_parts.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -89,7 +90,7 @@ class TrackerImpl {
     } else {
       advect(particles);
       Projection projection = fair_and_project();
-      if (settings_.guard) guard(projection);
+      if (settings_.guard) guard(std::move(projection));
     }
     finish();
   }
@@ -224,9 +225,19 @@ class TrackerImpl {
     if (done.changed()) update_topology(old_ids);
   }
 
+  // A small part that is spoilt is no reason to replace the whole mesh.
+  void drop_parts(Projection& projection) {
+    const std::vector<std::uint64_t> old_ids = mesh_.ids;
+    const std::vector<int> bad = bad_triangles(mesh_.positions, mesh_.triangles, topology_, projection.normals);
+    if (!drop_spoilt_parts(projection, bad, guard_settings().small_volume, mesh_)) return;
+    update_topology(old_ids);
+    projection = project_to_surface(*field_, default_projection(settings_.field), mesh_.positions);
+  }
+
   // Replaces a mesh that does not fit the field any more.
-  void guard(const Projection& projection) {
+  void guard(Projection projection) {
     Stopwatch watch(report_.seconds_guard);
+    drop_parts(projection);
     const SurfaceGeometry raw = extract_raw();
     const MeshDefects defects =
         find_defects(*field_, mesh_.positions, mesh_.triangles, topology_, projection, guard_settings());

@@ -63,7 +63,7 @@ TEST(Tracker, FirstMeshIsAtRest) {
   EXPECT_EQ(tracker.mesh().positions, tracker.mesh().rest_positions);
   EXPECT_EQ(tracker.report().components, 1);
   EXPECT_FALSE(tracker.report().reextracted);
-  EXPECT_DOUBLE_EQ(tracker.settings().edge_length, 0.8);
+  EXPECT_DOUBLE_EQ(tracker.settings().edge_length, 0.75);
   EXPECT_GT(tracker.settings().field.radius, 0);
 }
 
@@ -73,6 +73,7 @@ TEST(Tracker, FollowsATranslationWithoutTheGuard) {
   for (const char* method : {"total", "curvature"}) {
     TrackerSettings settings = settings_for(method);
     settings.fairing_iterations = 0;
+    settings.remeshing = false;
     Tracker tracker(settings, rigidly_moved(start, none, drift, 0));
     const std::vector<std::uint64_t> ids = tracker.mesh().ids;
     for (int frame = 1; frame <= 4; ++frame) {
@@ -110,6 +111,7 @@ TEST(Tracker, IntegratorsAgreeInTheLimit) {
   for (const Integrator integrator : {Integrator::euler, Integrator::rk2, Integrator::rk4}) {
     TrackerSettings settings = settings_for("total");
     settings.fairing_iterations = 0;
+    settings.remeshing = false;
     settings.max_motion = 0.05;
     settings.integrator = integrator;
     Tracker tracker(settings, rigidly_moved(start, spin, drift, 0));

@@ -12,13 +12,14 @@ namespace flowskin::tracking {
 namespace {
 
 // In units of the wanted edge length.
-constexpr double kShortEdge = 0.55;
+constexpr double kShortEdge = 0.5;
 constexpr double kLongEdge = 1.5;
+constexpr double kLargestCollapse = 0.005;  // volume a collapse may cost, in cubes of the longest edge
 constexpr int kCollapsePasses = 4;
 constexpr int kFlipPasses = 3;
 constexpr int kRounds = 4;
 constexpr int kRelaxationsPerRound = 2;
-constexpr double kLargestVolumeChange = 0.01;
+constexpr double kLargestVolumeChange = 0.05;
 
 MeshTopology topology_of(const SurfaceGeometry& surface) {
   return build_topology(static_cast<int>(surface.positions.size()), surface.triangles);
@@ -34,11 +35,12 @@ int collapse_short_edges(double shortest, double longest, SurfaceGeometry& surfa
   }
   std::sort(order.begin(), order.end(),
             [&](int a, int b) { return lengths[a] != lengths[b] ? lengths[a] < lengths[b] : a < b; });
+  const double volume = kLargestCollapse * longest * longest * longest;
   EditableMesh mesh(surface.positions, surface.triangles);
   int count = 0;
   for (int e : order) {
     const auto& [low, high] = topology.edges[e];
-    if (mesh.collapse(low, high, longest) || mesh.collapse(high, low, longest)) ++count;
+    if (mesh.collapse(low, high, longest, volume) || mesh.collapse(high, low, longest, volume)) ++count;
   }
   mesh.compact();
   return count;
@@ -65,7 +67,7 @@ SurfaceGeometry improve_part(const MetaballField& field, double edge_length, Sur
     flip_towards_delaunay(surface);
     std::vector<Vec3> normals = project_to_surface(field, projection, surface.positions).normals;
     relax(field, projection, topology_of(surface), surface.triangles, kRelaxationsPerRound, {}, surface.positions,
-          normals);
+          normals, Ridges::kept);
     if (round + 1 < kRounds) collapse_short_edges(kShortEdge * edge_length, kLongEdge * edge_length, surface);
   }
   return surface;

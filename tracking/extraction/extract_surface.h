@@ -12,7 +12,7 @@ SurfaceGeometry extract_raw_surface(const MetaballField& field, double edge_leng
 
 /// Makes the triangles of a raw surface fit for tracking, with edges around `edge_length` (m) long: short edges are
 /// collapsed, edges flipped towards Delaunay, vertices evened out along the surface. The topology of the surface is
-/// kept; a component whose volume would change by more than 1 % keeps its raw triangles. Every vertex ends on the
+/// kept; a component whose volume would change by more than 5 % keeps its raw triangles. Every vertex ends on the
 /// surface as default_projection says, or stays where marching cubes put it.
 SurfaceGeometry improve_surface(const MetaballField& field, double edge_length, const SurfaceGeometry& surface);
 

@@ -1,5 +1,6 @@
 #include "tracking/fairing/relaxation.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,11 +14,34 @@ namespace {
 constexpr double kShare = 0.5;
 constexpr double kLargestMove = 0.3;  // of the shortest edge at the vertex
 constexpr double kInvertedCosine = 0.2;
+constexpr double kRidge = 0.05;  // slope of the volume against the normal
 constexpr int kTakeBackRounds = 8;
 
+// Six times the derivative of the enclosed volume by the position of a vertex.
+Vec3 volume_gradient(int vertex, const MeshTopology& topology, const std::vector<Triangle>& triangles,
+                     const std::vector<Vec3>& positions) {
+  Vec3 sum = Vec3::Zero();
+  for (int t : topology.star(vertex)) {
+    const Triangle& triangle = triangles[t];
+    const int corner = triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
+    const Vec3 a = positions[triangle[(corner + 1) % 3]] - positions[vertex];
+    const Vec3 b = positions[triangle[(corner + 2) % 3]] - positions[vertex];
+    sum += a.cross(b);
+  }
+  return sum;
+}
+
+// Where the surface is sharply curved, moving down from the ridge costs volume: only moves along it or up are left.
+Vec3 along_ridge(const Vec3& move, const Vec3& growth, const Vec3& normal) {
+  const Vec3 uphill = growth - normal * normal.dot(growth);
+  const double steepness = uphill.norm();
+  if (!(steepness > kRidge * growth.norm() && uphill.dot(move) < 0)) return move;
+  return move - uphill * (uphill.dot(move) / (steepness * steepness));
+}
+
 // Where a vertex would go, before projection.
-Vec3 relaxed_position(int vertex, const MeshTopology& topology, const std::vector<Vec3>& positions,
-                      const Vec3& normal) {
+Vec3 relaxed_position(int vertex, const MeshTopology& topology, const std::vector<Triangle>& triangles,
+                      const std::vector<Vec3>& positions, const Vec3& normal, Ridges ridges) {
   const Vec3& x = positions[vertex];
   Vec3 mean = Vec3::Zero();
   double shortest = std::numeric_limits<double>::max();
@@ -29,6 +53,7 @@ Vec3 relaxed_position(int vertex, const MeshTopology& topology, const std::vecto
   if (ring.empty()) return x;
   Vec3 move = kShare / static_cast<double>(ring.size()) * mean;
   move -= normal * normal.dot(move);
+  if (ridges == Ridges::kept) move = along_ridge(move, volume_gradient(vertex, topology, triangles, positions), normal);
   const double limit = kLargestMove * std::sqrt(shortest), length = move.norm();
   return length > limit ? Vec3(x + limit / length * move) : Vec3(x + move);
 }
@@ -55,13 +80,14 @@ void take_back(const std::vector<Triangle>& triangles, const std::vector<char>& 
 
 bool is_inverted(const Triangle& triangle, const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) {
   const Vec3 area = doubled_area_vector(positions, triangle);
-  const Vec3 outward = normals[triangle[0]] + normals[triangle[1]] + normals[triangle[2]];
-  return !(area.dot(outward) > kInvertedCosine * area.norm() * outward.norm());
+  const double largest =
+      std::max({area.dot(normals[triangle[0]]), area.dot(normals[triangle[1]]), area.dot(normals[triangle[2]])});
+  return !(largest > kInvertedCosine * area.norm());
 }
 
 void relax(const MetaballField& field, const ProjectionSettings& projection, const MeshTopology& topology,
            const std::vector<Triangle>& triangles, int iterations, const std::vector<int>& vertices,
-           std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
+           std::vector<Vec3>& positions, std::vector<Vec3>& normals, Ridges ridges) {
   std::vector<int> moving = vertices;
   if (moving.empty()) {
     moving.resize(positions.size());
@@ -74,7 +100,7 @@ void relax(const MetaballField& field, const ProjectionSettings& projection, con
 #pragma omp parallel for schedule(dynamic, 256)
     for (int i = 0; i < static_cast<int>(moving.size()); ++i) {
       const int vertex = moving[i];
-      Vec3 x = relaxed_position(vertex, topology, old_positions, old_normals[vertex]);
+      Vec3 x = relaxed_position(vertex, topology, triangles, old_positions, old_normals[vertex], ridges);
       SurfaceDistance point;
       if (!project_point(field, projection, x, point)) continue;
       positions[vertex] = x;

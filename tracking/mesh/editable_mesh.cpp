@@ -78,8 +78,9 @@ bool EditableMesh::wings(int a, int b, std::array<int, 2>& triangles, std::array
   return count == 2 && opposite[0] != opposite[1];
 }
 
-bool EditableMesh::collapse_keeps_shape(int kept, int removed, double longest_edge) const {
+bool EditableMesh::collapse_keeps_shape(int kept, int removed, double longest_edge, double largest_volume) const {
   const Vec3 outward = star_normal(kept) + star_normal(removed);
+  double volume = 0;  // six times the volume that the surface gives up
   // A tiny move does no harm to well shaped triangles, and slivers around it have no shape to lose.
   const bool tiny = (positions_[kept] - positions_[removed]).norm() < kTinyEdge * longest_edge;
   for (int t : stars_[removed]) {
@@ -93,6 +94,8 @@ bool EditableMesh::collapse_keeps_shape(int kept, int removed, double longest_ed
       const double length = (positions_[vertex] - positions_[kept]).norm();
       if (length > longest_edge && length > (positions_[vertex] - positions_[removed]).norm()) return false;
     }
+    volume +=
+        (after[0] - positions_[removed]).dot((after[1] - positions_[removed]).cross(after[2] - positions_[removed]));
     const double shape_before = shape(before[0], before[1], before[2]);
     if (tiny && shape_before < kSliver) continue;
     if (shape(after[0], after[1], after[2]) < std::min(kSliver, shape_before)) return false;
@@ -101,7 +104,7 @@ bool EditableMesh::collapse_keeps_shape(int kept, int removed, double longest_ed
         shape_before < kSliver ? Vec3(outward.normalized()) : unit_normal(before[0], before[1], before[2]);
     if (!(unit_normal(after[0], after[1], after[2]).dot(normal_before) > kLargestTurn)) return false;
   }
-  return true;
+  return std::abs(volume) / 6 <= largest_volume;
 }
 
 bool EditableMesh::collapse_keeps_side(int kept, int removed, double longest_edge,
@@ -151,8 +154,8 @@ void EditableMesh::merge(int kept, int removed) {
   stars_[removed].clear();
 }
 
-bool EditableMesh::collapse(int kept, int removed, double longest_edge) {
-  if (!may_collapse(kept, removed) || !collapse_keeps_shape(kept, removed, longest_edge)) return false;
+bool EditableMesh::collapse(int kept, int removed, double longest_edge, double largest_volume) {
+  if (!may_collapse(kept, removed) || !collapse_keeps_shape(kept, removed, longest_edge, largest_volume)) return false;
   merge(kept, removed);
   return true;
 }

@@ -1,6 +1,7 @@
 // Edge splits, collapses and flips on a closed two-manifold mesh, each with its vetoes.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "tracking/mesh/surface_mesh.h"
@@ -15,8 +16,10 @@ class EditableMesh {
 
   /// Merges `removed` into `kept`, which stays where it is. Refused, with false, where the edge does not exist, where
   /// the link condition fails (the mesh would stop being two-manifold: Dey et al. 1999), where a triangle would turn by
-  /// more than 60 degrees or become a sliver, or where an edge would grow beyond `longest_edge` (m).
-  bool collapse(int kept, int removed, double longest_edge);
+  /// more than 60 degrees or become a sliver, or where an edge would grow beyond `longest_edge` (m), or where the
+  /// enclosed volume would change by more than `largest_volume` (m^3).
+  bool collapse(int kept, int removed, double longest_edge,
+                double largest_volume = std::numeric_limits<double>::infinity());
 
   /// The same in a tangle, where triangles do not know how they should look: refused where a triangle that agreed with
   /// the surface's outward normals (one a vertex) would no longer do so.
@@ -45,7 +48,7 @@ class EditableMesh {
   /// The two triangles of edge ab and the vertices opposite of it; false where there are not exactly two.
   bool wings(int a, int b, std::array<int, 2>& triangles, std::array<int, 2>& opposite) const;
   Vec3 star_normal(int vertex) const;
-  bool collapse_keeps_shape(int kept, int removed, double longest_edge) const;
+  bool collapse_keeps_shape(int kept, int removed, double longest_edge, double largest_volume) const;
   bool collapse_keeps_side(int kept, int removed, double longest_edge, const std::vector<Vec3>& normals) const;
   /// True where the link condition holds: the mesh stays two-manifold.
   bool may_collapse(int kept, int removed) const;

@@ -6,13 +6,14 @@
 
 #include "tracking/fairing/relaxation.h"
 #include "tracking/mesh/closest_point.h"
+#include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
 
 namespace flowskin::tracking {
 namespace {
 
 constexpr double kFoldedCosine = -0.93;  // neighbouring triangles with an inner angle below 21 degrees
-constexpr double kLeastShape = 1e-3;    // doubled area over the longest squared side
+constexpr double kLeastShape = 1e-3;     // doubled area over the longest squared side
 // A few places of a large mesh may cut a crease or miss a bump finer than an edge, until fairing and remeshing reach
 // them: no reason to give up the whole mesh. One place in so many is let pass.
 constexpr int kOneIn = 500;
@@ -141,6 +142,7 @@ GuardVerdict inspect(const SurfaceGeometry& fresh, const std::vector<Vec3>& posi
   check_defects(defects.off_triangles, tolerated.off_triangles + static_cast<int>(triangles.size()) / kOneIn,
                 "triangles off the surface", verdict.reasons);
   check_coverage(fresh, positions, triangles, settings, verdict.reasons);
+  for (const std::string& problem : mesh_problems(positions, triangles)) verdict.reasons.push_back(problem);
   return verdict;
 }
 
