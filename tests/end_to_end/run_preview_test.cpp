@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>

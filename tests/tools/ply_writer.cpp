@@ -12,7 +12,7 @@ namespace {
 class PlyWriterTest : public IoTest {};
 
 double as_float(double value) { return static_cast<double>(static_cast<float>(value)); }
-Vec3 as_float(const Vec3& v) { return v.cast<float>().cast<double>(); }
+Vec3 as_float(const Vec3& v) { return {as_float(v.x()), as_float(v.y()), as_float(v.z())}; }
 
 TEST_F(PlyWriterTest, SurfaceComesBackAsFloats) {
   const SurfaceFrame frame = sphere_frame(3);
