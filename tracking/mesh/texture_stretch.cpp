@@ -23,7 +23,7 @@ Mat2 edges_in_plane(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 Stretch stretch_of(const Mat2& rest, const Mat2& now) {
   const double area = rest.determinant();
-  if (!(area > 0)) return {std::numeric_limits<double>::infinity(), 0};
+  if (!(area > 1e-12 * rest.squaredNorm())) return {std::numeric_limits<double>::infinity(), 0};
   const Mat2 map = now * (Mat2() << rest(1, 1), -rest(0, 1), -rest(1, 0), rest(0, 0)).finished() / area;
   // Singular values of a 2x2 matrix in closed form: (p +- q) / 2.
   const double p = std::hypot(map(0, 0) + map(1, 1), map(1, 0) - map(0, 1));
