@@ -1,7 +1,6 @@
 #include "tracking/remeshing/remesh.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "tracking/mesh/editable_mesh.h"
@@ -128,16 +127,21 @@ int collapse_triangles(const std::vector<int>& triangles, const std::vector<Vec3
 std::vector<double> carry_rest_lengths(const std::vector<std::uint64_t>& old_ids, const MeshTopology& old_topology,
                                        const std::vector<double>& old_lengths, const SurfaceMesh& mesh,
                                        const MeshTopology& topology, double edge_length) {
-  std::map<std::pair<std::uint64_t, std::uint64_t>, double> known;
+  using Named = std::pair<std::pair<std::uint64_t, std::uint64_t>, double>;  // an edge by the ids of its ends
+  std::vector<Named> known(old_lengths.size());
   for (std::size_t e = 0; e < old_lengths.size(); ++e) {
     const auto& [a, b] = old_topology.edges[e];
-    known[std::minmax({old_ids[a], old_ids[b]})] = old_lengths[e];
+    known[e] = {std::minmax({old_ids[a], old_ids[b]}), old_lengths[e]};
   }
+  std::sort(known.begin(), known.end());
   std::vector<double> lengths = edge_lengths(topology, mesh.positions);
   for (std::size_t e = 0; e < lengths.size(); ++e) {
     const auto& [a, b] = topology.edges[e];
-    const auto found = known.find(std::minmax({mesh.ids[a], mesh.ids[b]}));
-    lengths[e] = found != known.end() ? found->second : std::clamp(lengths[e], 0.7 * edge_length, 1.3 * edge_length);
+    const std::pair<std::uint64_t, std::uint64_t> ends = std::minmax({mesh.ids[a], mesh.ids[b]});
+    const auto found = std::lower_bound(known.begin(), known.end(), Named{ends, -1.0});
+    lengths[e] = found != known.end() && found->first == ends
+                     ? found->second
+                     : std::clamp(lengths[e], 0.7 * edge_length, 1.3 * edge_length);
   }
   return lengths;
 }
