@@ -81,7 +81,7 @@ double NeighborLists::mean_length() const {
 }
 
 std::size_t NeighborLists::memory_bytes() const {
-  std::size_t bytes = ranges_.capacity() * sizeof(Range) + blocks_.capacity() * sizeof(blocks_[0]);
+  std::size_t bytes = ranges_.capacity() * sizeof(Range) + blocks_.capacity() * sizeof(decltype(blocks_)::value_type);
   for (const auto& block : blocks_) bytes += block.capacity() * sizeof(std::uint32_t);
   return bytes;
 }

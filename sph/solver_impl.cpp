@@ -403,7 +403,7 @@ std::size_t SolverImpl::memory_bytes() const {
   std::size_t bytes = const_cast<ParticleArrays&>(particles_).memory_bytes() + boundary_.memory_bytes() +
                       curve_.memory_bytes() + build_positions_.capacity() * sizeof(build_positions_[0]) +
                       clusters_.memory_bytes() + fluid_lists_.memory_bytes() + wall_lists_.memory_bytes() +
-                      wall_triangles_.capacity() * sizeof(wall_triangles_[0]);
+                      wall_triangles_.capacity() * sizeof(decltype(wall_triangles_)::value_type);
   for (const auto& triangles : wall_triangles_) bytes += triangles.capacity() * sizeof(std::uint32_t);
   return bytes;
 }
