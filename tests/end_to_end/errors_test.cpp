@@ -45,7 +45,7 @@ TEST_F(ProgramErrors, HelpAndVersion) {
 }
 
 TEST_F(ProgramErrors, WrongCommandLines) {
-  expect(run_flowskin({}), 2, {"subcommand"});
+  expect(run_flowskin({}), 2, {"A subcommand is required"});
   expect(run_flowskin({"fly"}), 2, {"fly"});
   expect(run_flowskin({"run"}), 2, {"scene"});
   expect(run_flowskin({"run", end_to_end::scene("stairs_preview.json"), "--velocity", "curvatur"}), 2,
