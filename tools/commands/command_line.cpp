@@ -96,6 +96,9 @@ int run_choice(int argc, const char* const* argv) {
   about->add_flag("--keys", choice.scene_keys, "A table of all keys with unit, default and meaning (Markdown)");
   about->require_option(1);
 
+  // CLI11 would only say that a subcommand is missing.
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr)
+    throw InputError(fmt::format("there is no subcommand \"{}\"; `flowskin --help` lists them", argv[1]));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
