@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <new>
@@ -97,7 +98,9 @@ int run_choice(int argc, const char* const* argv) {
   about->require_option(1);
 
   // CLI11 would only say that a subcommand is missing.
-  if (argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr)
+  const auto known = app.get_subcommands(nullptr);
+  const auto named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && std::none_of(known.begin(), known.end(), named))
     throw InputError(fmt::format("there is no subcommand \"{}\"; `flowskin --help` lists them", argv[1]));
   try {
     app.parse(argc, argv);
