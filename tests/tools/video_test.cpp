@@ -1,5 +1,6 @@
 // Videos: what ffprobe says of them, and what is left when it goes wrong.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -42,9 +43,10 @@ class Video : public ::testing::Test {
     }
   }
   fs::path pattern() const { return folder_ / "frame_%04d.png"; }
-  // width,height,pix_fmt,rate,count
+  // codec,width,height,pix_fmt,rate,count
   static std::string probe(const fs::path& file) {
-    const fs::path plain = fs::path(::testing::TempDir()) / "flowskin_probe.mp4";  // for the shell
+    // A name without quotes for the shell, and one of this process's own: tests run side by side.
+    const fs::path plain = fs::path(::testing::TempDir()) / ("flowskin_probe_" + std::to_string(::getpid()) + ".mp4");
     fs::copy_file(file, plain, fs::copy_options::overwrite_existing);
     const std::string command =
         "ffprobe -v error -count_frames -select_streams v:0 -show_entries "
