@@ -161,7 +161,7 @@ class TrackerImpl {
       const double next = last ? paths.end_time() : paths.begin_time() + duration * (substep + 1) / report_.substeps;
       {
         Stopwatch watch(report_.seconds_velocity);
-        advect_step(*method_, mesh_, settings_.integrator, *field_, field_at, time, next - time, first,
+        advect_step(*method_, topology_, settings_.integrator, *field_, field_at, time, next - time, first,
                     mesh_.positions);
         first.clear();
         field_.emplace(field_at(next));
@@ -260,7 +260,7 @@ class TrackerImpl {
     velocities_known_ = true;
     if (field_ && !mesh_.positions.empty()) {
       Stopwatch watch(report_.seconds_velocity);
-      method_->evaluate(*field_, mesh_, mesh_.positions, mesh_.velocities);
+      method_->evaluate(*field_, topology_, mesh_.positions, mesh_.velocities);
     }
     const MeshComponents components = mesh_components(mesh_.positions, mesh_.triangles);
     report_.components = components.count;

@@ -98,7 +98,7 @@ TEST(ParticlePaths, RefuseBadParticles) {
 // A velocity field that is known everywhere: rotation about an axis, with a pull along it.
 class AnalyticVelocity : public VelocityMethod {
  public:
-  void evaluate(const MetaballField&, const SurfaceMesh&, const std::vector<Vec3>& positions,
+  void evaluate(const MetaballField&, const MeshTopology&, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
     velocities.clear();
     for (const Vec3& x : positions) velocities.push_back(Vec3(0.2, 0.3, 1).cross(x));
@@ -106,18 +106,17 @@ class AnalyticVelocity : public VelocityMethod {
 };
 
 double error_of_rotation(Integrator integrator, int steps) {
-  SurfaceMesh mesh;
-  mesh.positions = {{1, 0, 0}, {0, 2, 1}, {-1, 1, 0.5}};
+  const std::vector<Vec3> start = {{1, 0, 0}, {0, 2, 1}, {-1, 1, 0.5}};
   const FieldAt field_at = [](double) { return MetaballField({Vec3::Zero()}, {}, FieldSettings{1, 0.5, 1}); };
-  std::vector<Vec3> positions = mesh.positions;
+  std::vector<Vec3> positions = start;
   const double step = 1.0 / steps;
   for (int i = 0; i < steps; ++i) {
     const MetaballField field = field_at(i * step);
-    advect_step(AnalyticVelocity(), mesh, integrator, field, field_at, i * step, step, {}, positions);
+    advect_step(AnalyticVelocity(), {}, integrator, field, field_at, i * step, step, {}, positions);
   }
   double error = 0;
   for (int v = 0; v < 3; ++v) {
-    error = std::max(error, (positions[v] - test::rotation({0.2, 0.3, 1}) * mesh.positions[v]).norm());
+    error = std::max(error, (positions[v] - test::rotation({0.2, 0.3, 1}) * start[v]).norm());
   }
   return error;
 }
@@ -134,7 +133,7 @@ TEST(Integrator, ConvergesWithItsOrder) {
 // The velocity of the particles' mean: changes with the time of the field, so it tests the times of the stages.
 class MeanVelocity : public VelocityMethod {
  public:
-  void evaluate(const MetaballField& field, const SurfaceMesh&, const std::vector<Vec3>& positions,
+  void evaluate(const MetaballField& field, const MeshTopology&, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
     velocities.assign(positions.size(), field.velocities().front());
   }
@@ -145,23 +144,20 @@ TEST(Integrator, AsksForTheFieldAtTheRightTimes) {
   const ParticlePaths paths(from, to);
   const FieldSettings settings{1, 0.5, 1};
   const FieldAt field_at = [&](double t) { return paths.field(t, settings); };
-  SurfaceMesh mesh;
-  mesh.positions = {{5, 5, 5}};
-  std::vector<Vec3> positions = mesh.positions;
+  const std::vector<Vec3> start = {{5, 5, 5}};
+  std::vector<Vec3> positions = start;
   // Simpson's rule, which RK4 becomes here, is exact for the quadratic velocity; the midpoint rule is not.
-  advect_step(MeanVelocity(), mesh, Integrator::rk4, field_at(0), field_at, 0, 1, {}, positions);
-  EXPECT_LT((positions[0] - mesh.positions[0] - (to.positions[0] - from.positions[0])).norm(), 1e-12);
-  positions = mesh.positions;
-  advect_step(MeanVelocity(), mesh, Integrator::rk2, field_at(0), field_at, 0, 1, {}, positions);
-  EXPECT_LT((positions[0] - mesh.positions[0] - cubic_motion(0.5).velocities[0]).norm(), 1e-12);
+  advect_step(MeanVelocity(), {}, Integrator::rk4, field_at(0), field_at, 0, 1, {}, positions);
+  EXPECT_LT((positions[0] - start[0] - (to.positions[0] - from.positions[0])).norm(), 1e-12);
+  positions = start;
+  advect_step(MeanVelocity(), {}, Integrator::rk2, field_at(0), field_at, 0, 1, {}, positions);
+  EXPECT_LT((positions[0] - start[0] - cubic_motion(0.5).velocities[0]).norm(), 1e-12);
 }
 
 TEST(Integrator, TakesAFirstVelocityThatIsKnown) {
-  SurfaceMesh mesh;
-  mesh.positions = {{1, 0, 0}};
-  std::vector<Vec3> positions = mesh.positions;
+  std::vector<Vec3> positions = {{1, 0, 0}};
   const FieldAt field_at = [](double) { return MetaballField({Vec3::Zero()}, {}, FieldSettings{1, 0.5, 1}); };
-  advect_step(AnalyticVelocity(), mesh, Integrator::euler, field_at(0), field_at, 0, 0.5, {{2, 0, 0}}, positions);
+  advect_step(AnalyticVelocity(), {}, Integrator::euler, field_at(0), field_at, 0, 0.5, {{2, 0, 0}}, positions);
   EXPECT_EQ(positions[0], Vec3(2, 0, 0));
 }
 

@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "tracking/field/metaball_field.h"
-#include "tracking/mesh/surface_mesh.h"
+#include "tracking/mesh/topology.h"
 
 namespace flowskin::tracking {
 
-/// Computes the velocity of every vertex (m/s). Methods may look at the whole mesh, so they get all of it.
+/// Computes the velocity of every vertex (m/s). Methods may look at the whole mesh.
 class VelocityMethod {
  public:
   virtual ~VelocityMethod() = default;
-  /// `positions` are the vertices at the time of `field` (m), which may differ from mesh.positions inside a
-  /// Runge-Kutta step; `velocities` gets one entry a vertex. Never NaN: where the field says nothing, zero.
-  virtual void evaluate(const MetaballField& field, const SurfaceMesh& mesh, const std::vector<Vec3>& positions,
+  /// `positions` are the vertices at the time of `field` (m); `velocities` gets one entry a vertex. Never NaN: where
+  /// nothing is known, zero. An empty `topology` means vertices without neighbours.
+  virtual void evaluate(const MetaballField& field, const MeshTopology& topology, const std::vector<Vec3>& positions,
                         std::vector<Vec3>& velocities) const = 0;
 };
 
