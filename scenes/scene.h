@@ -59,7 +59,7 @@ struct ParticlesSpec {
 
 struct TrackingSpec {
   bool enabled = true;
-  std::string velocity = "curvature";
+  std::string velocity = "auto";   ///< A method, or auto: the best one for these particles.
   std::string integrator = "rk2";  ///< euler, rk2, rk4
   int steps_per_frame = 2;         ///< Particle states between two frames, one tracker step each.
   double max_motion = 0.25;        ///< in effective radii

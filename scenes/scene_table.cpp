@@ -225,9 +225,12 @@ Table<Scene> tracking_keys(const SceneVocabulary& vocabulary) {
   const auto tracking = &S::tracking;
   return {
       key<S>("tracking.enabled", at(tracking, &T::enabled), boolean(), "", "Whether a surface is tracked at all."),
-      key<S>("tracking.velocity", at(tracking, &T::velocity),
-             choice(vocabulary.velocity_methods, "name of a velocity method (flowskin methods lists them)"), "",
-             "Method that gives the velocity of the surface."),
+      key<S>(
+          "tracking.velocity", at(tracking, &T::velocity),
+          choice(vocabulary.velocity_methods, "auto, or the name of a velocity method (flowskin methods lists them)"),
+          "",
+          "Method that gives the velocity of the surface; auto: hybrid for particles with velocities, affine for those "
+          "without."),
       key<S>("tracking.integrator", at(tracking, &T::integrator), choice({"euler", "rk2", "rk4"}), "",
              "Time integration of the vertices."),
       key<S>("tracking.steps_per_frame", at(tracking, &T::steps_per_frame), integer(1, 10000), "",

@@ -17,7 +17,7 @@ namespace flowskin::tracking {
 struct TrackerSettings {
   double spacing = 0;   ///< Distance of neighbouring particles (m); must be given.
   FieldSettings field;  ///< radius 0: default_field_settings(spacing)
-  std::string velocity = "curvature";
+  std::string velocity = "hybrid";
   Integrator integrator = Integrator::rk2;
   double max_motion = 0.25;        ///< A substep moves no particle further than this share of the effective radius.
   double edge_length = 0;          ///< Edge length of an extracted mesh (m); 0: 0.75 spacings.

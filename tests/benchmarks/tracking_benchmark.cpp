@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "tests/tracking/field_test_bodies.h"
+#include "tracking/extraction/extract_surface.h"
+#include "tracking/mesh/topology.h"
 #include "tracking/velocity/velocity_method.h"
 
 namespace flowskin::tracking {
@@ -46,6 +48,32 @@ struct Body {
   std::vector<Vec3> points;
   double neighbors = 0;
 };
+
+/// A large mesh at the default edge length, on a hollow ball in a flow that no affine motion explains, with noise.
+struct LargeMesh {
+  LargeMesh()
+      : particles(test::lattice(1, 66, 0.2, 42, [](const Vec3& x) { return std::abs(x.norm() - 61) < 2.5; })),
+        field(particles, flow_with_noise(), default_field_settings(1)),
+        surface(extract_surface(field, 0.75)),
+        topology(build_topology(static_cast<int>(surface.positions.size()), surface.triangles)) {}
+
+  std::vector<Vec3> flow_with_noise() const {
+    test::Random random(43);
+    return test::velocities_of(particles, [&random](const Vec3& x) {
+      return Vec3(Vec3(std::sin(0.2 * x.y()), std::cos(0.2 * x.z()), std::sin(0.2 * x.x())) + 0.05 * random.vector());
+    });
+  }
+
+  std::vector<Vec3> particles;
+  MetaballField field;
+  SurfaceGeometry surface;
+  MeshTopology topology;
+};
+
+const LargeMesh& large_mesh() {
+  static const LargeMesh mesh;
+  return mesh;
+}
 
 const Body& body(double radius_in_spacings) {
   static const Body two(2);
@@ -113,6 +141,29 @@ void register_benchmarks(double radius) {
   });
 }
 
+/// The methods on the large mesh, with one and two threads.
+void register_large_meshes() {
+  for (const VelocityMethodInfo& method : velocity_methods()) {
+    for (const int threads : {1, 2}) {
+      const std::string name = "large_mesh/" + method.name + "/threads:" + std::to_string(threads);
+      const auto run = [&method, threads](benchmark::State& state) {
+        const LargeMesh& mesh = large_mesh();
+        const int before = omp_get_max_threads();
+        omp_set_num_threads(threads);
+        const auto velocity = method.create();
+        std::vector<Vec3> velocities;
+        for (auto iteration : state) velocity->evaluate(mesh.field, mesh.topology, mesh.surface.positions, velocities);
+        omp_set_num_threads(before);
+        state.counters["vertices"] = static_cast<double>(mesh.surface.positions.size());
+        state.counters["us_per_vertex"] =
+            benchmark::Counter(static_cast<double>(mesh.surface.positions.size()) * 1e-6,
+                               benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+      };
+      benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond)->UseRealTime();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace flowskin::tracking
 
@@ -121,6 +172,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   for (const double radius : {2.0, 2.5, 3.0}) flowskin::tracking::register_benchmarks(radius);
+  flowskin::tracking::register_large_meshes();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

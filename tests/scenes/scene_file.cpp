@@ -32,7 +32,7 @@ TEST(SceneFile, KeysThatAreNotThereKeepTheirDefaults) {
   const Scene scene = parse(small_scene());
   EXPECT_EQ(scene.frames, Scene{}.frames);
   EXPECT_EQ(scene.solver.viscosity, sph::SolverSettings{}.viscosity);
-  EXPECT_EQ(scene.tracking.velocity, "curvature");
+  EXPECT_EQ(scene.tracking.velocity, "auto");
   EXPECT_EQ(scene.solver.spacing, 0.1);
   EXPECT_EQ(scene.particles.spacing, 0.1);
   ASSERT_EQ(scene.bodies.size(), 1u);

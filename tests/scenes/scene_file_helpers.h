@@ -11,7 +11,7 @@
 namespace flowskin::scenes {
 
 inline const SceneVocabulary& test_vocabulary() {
-  static const SceneVocabulary vocabulary{{"normal", "total", "curvature", "curvature-belyaev"}};
+  static const SceneVocabulary vocabulary{{"auto", "normal", "total", "curvature", "curvature-belyaev"}};
   return vocabulary;
 }
 

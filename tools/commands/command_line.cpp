@@ -11,6 +11,7 @@
 #include "tools/commands/commands.h"
 #include "tools/errors.h"
 #include "tools/pipeline/scene_run.h"
+#include "tools/pipeline/tracker_bridge.h"
 #include "tools/report/run_log.h"
 #include "tracking/velocity/velocity_method.h"
 
@@ -22,7 +23,7 @@ constexpr int kDone = 0, kRunFailed = 1, kInputWrong = 2;
 constexpr int kMaxThreads = 1024;
 
 std::vector<std::string> method_names() {
-  std::vector<std::string> names;
+  std::vector<std::string> names{kAutomaticVelocity};
   for (const auto& method : tracking::velocity_methods()) names.push_back(method.name);
   return names;
 }

@@ -74,6 +74,7 @@ SceneRun::SceneRun(const RunOptions& options, scenes::Scene scene, const RunDire
   log_.detail("machine: " + machine_text());
   source_ = clock_.time("source", [&] { return scenes::make_source(scene_); });
   const scenes::ParticleState& start = source_->state();
+  scene_.tracking.velocity = velocity_method_for(scene_.tracking.velocity, start);
   if (scene_.texture.rest_size <= 0) {
     const RestFrame rest = rest_frame(start.rest_positions);
     scene_.texture.rest_center = rest.center;

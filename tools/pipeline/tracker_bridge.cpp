@@ -6,6 +6,11 @@ tracking::Particles to_particles(const scenes::ParticleState& state) {
   return {state.time, state.ids, state.positions, state.velocities, state.rest_positions};
 }
 
+std::string velocity_method_for(const std::string& name, const scenes::ParticleState& state) {
+  if (name != kAutomaticVelocity) return name;
+  return state.velocities.empty() && !state.positions.empty() ? "affine" : "hybrid";
+}
+
 tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
   const scenes::TrackingSpec& spec = scene.tracking;
   const double spacing = scene.particles.spacing;
@@ -36,6 +41,7 @@ std::vector<Vec2f> confidence_attribute(const tracking::Tracker& tracker) {
 
 scenes::SceneVocabulary scene_vocabulary() {
   scenes::SceneVocabulary vocabulary;
+  vocabulary.velocity_methods.push_back(kAutomaticVelocity);
   for (const auto& method : tracking::velocity_methods()) vocabulary.velocity_methods.push_back(method.name);
   return vocabulary;
 }

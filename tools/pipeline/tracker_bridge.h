@@ -10,6 +10,12 @@ namespace flowskin::tools {
 
 tracking::Particles to_particles(const scenes::ParticleState& state);
 
+/// What a scene says for the best velocity method that its particles allow.
+inline constexpr const char* kAutomaticVelocity = "auto";
+
+/// The method of that name, or the best one for these particles.
+std::string velocity_method_for(const std::string& name, const scenes::ParticleState& state);
+
 /// Lengths that the scene gives in spacings become metres.
 tracking::TrackerSettings tracker_settings(const scenes::Scene& scene);
 
