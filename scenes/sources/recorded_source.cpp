@@ -74,6 +74,7 @@ ParticleState blended(const ParticleState& a, const ParticleState& b, double s, 
     }
   };
   add(a, 1 - s, s * interval);
+  state.earlier_count = state.ids.size();
   add(b, s, (s - 1) * interval);
   return state;
 }

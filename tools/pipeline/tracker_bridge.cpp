@@ -3,7 +3,15 @@
 namespace flowskin::tools {
 
 tracking::Particles to_particles(const scenes::ParticleState& state) {
-  return {state.time, state.ids, state.positions, state.velocities, state.rest_positions};
+  tracking::Particles particles;
+  particles.time = state.time;
+  particles.ids = state.ids;
+  particles.positions = state.positions;
+  if (state.has_velocities) particles.velocities = state.velocities;
+  if (state.has_material) particles.rest_positions = state.rest_positions;
+  particles.weights = state.weights;
+  particles.has_lasting_ids = state.has_lasting_ids;
+  return particles;
 }
 
 tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {

@@ -7,6 +7,7 @@
 
 namespace flowskin::tools {
 
+/// What the source does not know stays empty.
 tracking::Particles to_particles(const scenes::ParticleState& state);
 
 /// Lengths that the scene gives in spacings become metres.
