@@ -88,7 +88,7 @@ Table<Scene> general_keys() {
       key<S>("name", at(&S::name), text(), "", "Name of the scene, for messages and titles."),
       key<S>("description", at(&S::description), text(), "", "What the scene shows."),
       key<S>("seed", at(&S::seed), natural(), "", "Seed of all random numbers."),
-      key<S>("frames", at(&S::frames), integer(0, 1000000), "",
+      key<S>("frames", at(&S::frames), integer(1, 1000000), "",
              "Frames after the first one, which is frame 0 at time 0."),
       key<S>("frame_rate", at(&S::frame_rate), number(above(0, 1e5)), "1/s", "Frames a second."),
   };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <nanoflann.hpp>
+#include <numbers>
 
 namespace flowskin::scenes {
 namespace {
@@ -11,6 +12,10 @@ namespace {
 using sph::Vec3;
 
 constexpr std::size_t most_samples = 20000;
+/// Where the volume of a particle says no more than this times the nearest distance, it is that of a lattice.
+constexpr double lattice_tolerance = 1.03;
+/// Neighbours of disordered particles are up to so many times nearer than the spacing.
+constexpr double largest_disorder = 1.3;
 
 /// Points for nanoflann.
 struct PointCloud {
@@ -28,8 +33,8 @@ using PointTree =
 /// Distances of `from` to the nearest point of the tree, the `skipped` nearest left out.
 std::vector<double> distances(const std::vector<Vec3>& from, const PointTree& tree, std::size_t skipped) {
   std::vector<double> result(from.size(), std::numeric_limits<double>::infinity());
-  std::array<int, 2> index{};
-  std::array<double, 2> squared{};
+  std::vector<int> index(skipped + 1);
+  std::vector<double> squared(skipped + 1);
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (tree.knnSearch(from[i].data(), skipped + 1, index.data(), squared.data()) > skipped)
       result[i] = std::sqrt(squared[skipped]);
@@ -60,7 +65,15 @@ double estimated_spacing(const std::vector<Vec3>& positions) {
   std::vector<Vec3> samples;
   const std::size_t stride = 1 + positions.size() / most_samples;
   for (std::size_t i = 0; i < positions.size(); i += stride) samples.push_back(positions[i]);
-  return quantile(distances(samples, tree, 1), 0.5);
+  const double nearest = quantile(distances(samples, tree, 1), 0.5);
+  // By volume: within the distance of the 32nd neighbour there are 32.5 particles. At the surface that is too few, so
+  // the denser part counts; films and drops without an inside are kept in check by the nearest neighbours.
+  constexpr std::size_t neighbors = 32;
+  if (positions.size() <= neighbors) return nearest;
+  const double by_volume =
+      quantile(distances(samples, tree, neighbors), 0.2) * std::cbrt(4 * std::numbers::pi / 3 / (neighbors + 0.5));
+  if (by_volume <= lattice_tolerance * nearest) return nearest;
+  return std::min(by_volume, largest_disorder * nearest);
 }
 
 }  // namespace flowskin::scenes

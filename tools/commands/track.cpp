@@ -51,7 +51,7 @@ double spacing_of(const TrackOptions& options, const ParticleSequence& sequence)
     warn(fmt::format("the files say radius {:.4g} m, but neighbours are {:.4g} m apart: --spacing settles it",
                      by_radius / 2, estimate));
   say(options,
-      fmt::format("spacing: {:.4g} m, the median distance of nearest neighbours (--spacing settles it)", estimate));
+      fmt::format("spacing: {:.4g} m, estimated from the distances of neighbours (--spacing settles it)", estimate));
   return estimate;
 }
 
@@ -78,6 +78,9 @@ void set_times(const TrackOptions& options, ParticleSequence& sequence, scenes::
                     "--time-step right?",
                     sequence.times.back(), sequence.interval));
   scene.frames = static_cast<int>(all);
+  if (scene.frames == 0)
+    throw InputError(fmt::format("{} is the only file: to track a surface, at least two are needed",
+                                 sequence.files.front().string()));
   if (options.run.frames) scene.frames = std::min(scene.frames, *options.run.frames);
 }
 

@@ -92,7 +92,7 @@ void describe_particles(FileInfo& info, const std::string& name, const scenes::P
   if (state.positions.empty()) return;
   info.lines.push_back(bounds_line(state.positions));
   if (const double spacing = scenes::estimated_spacing(state.positions); spacing > 0)
-    info.lines.push_back(fmt::format("spacing: about {:.4g} m (median distance of nearest neighbours)", spacing));
+    info.lines.push_back(fmt::format("spacing: about {:.4g} m (estimated from the distances of neighbours)", spacing));
   if (file.has_velocities)
     info.lines.push_back(range_line("speed", "m/s", state.velocities, [](const Vec3& v) { return v.norm(); }));
   if (std::any_of(state.densities.begin(), state.densities.end(), [](double d) { return d != 0; }))
