@@ -8,6 +8,7 @@
 #include <string>
 
 #include "end_to_end/program.h"
+#include "scenes/io/ply_reader.h"
 #include "tools/io/surface_writers.h"
 #include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/mesh_check.h"
