@@ -92,7 +92,7 @@ class SceneRun {
   void advance(int frame);
   void record(int frame);
   void warn_of_ghosts(double time);
-  void write_row(int frame, const SurfaceFrame* surface);
+  void write_row(int frame, std::size_t particles, const SurfaceFrame* surface);
   void finish(double started);
 
   const RunOptions& options_;
@@ -202,12 +202,13 @@ void SceneRun::record(int frame) {
       if (surface) pictures_->draw(frame, *surface);
     });
   }
-  write_row(frame, surface.get());
+  write_row(frame, state.positions.size(), surface.get());
 }
 
-void SceneRun::write_row(int frame, const SurfaceFrame* surface) {
+void SceneRun::write_row(int frame, std::size_t particles, const SurfaceFrame* surface) {
   FrameRow row =
       clock_.time("statistics", [&] { return statistics_.finish_frame(frame, *source_, tracker_.get(), surface); });
+  row.particles = particles;  // of blended states those that are written
   const auto since_last_row = [&](const char* stage) {
     const double total = clock_.seconds(stage);
     return total - std::exchange(booked_[stage], total);
