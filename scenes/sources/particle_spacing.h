@@ -14,9 +14,10 @@ std::vector<double> nearest_distances(const std::vector<sph::Vec3>& from, const 
 /// The value below which a share of the values lie; 0 where there are none.
 double quantile(std::vector<double> values, double share);
 
-/// Spacing (m) by the median distance to the nearest neighbour and the volume that 32 neighbours take, over at most some
-/// ten thousand particles: the edge of the cube that a particle fills. 0 where there are fewer than two apart. Exact for
-/// a lattice; within some per cent for disordered particles, whose nearest neighbours are up to a fifth nearer.
+/// Spacing (m) by the median distance to the nearest neighbour and the volume that 32 neighbours take, over at most
+/// some ten thousand particles: the edge of the cube that a particle fills. 0 where there are fewer than two apart.
+/// Exact for a lattice; within some per cent for disordered particles, whose nearest neighbours are up to a fifth
+/// nearer.
 double estimated_spacing(const std::vector<sph::Vec3>& positions);
 
 }  // namespace flowskin::scenes

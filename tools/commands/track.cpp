@@ -9,8 +9,10 @@
 #include "scenes/sources/particle_spacing.h"
 #include "tools/commands/commands.h"
 #include "tools/errors.h"
+#include "tools/pipeline/picture_maker.h"
 #include "tools/pipeline/scene_run.h"
 #include "tools/pipeline/tracker_bridge.h"
+#include "tools/render/camera.h"
 
 namespace flowskin::tools {
 
@@ -84,29 +86,29 @@ void set_times(const TrackOptions& options, ParticleSequence& sequence, scenes::
   if (options.run.frames) scene.frames = std::min(scene.frames, *options.run.frames);
 }
 
-/// Where the ground is to lie: under the particles at the beginning, in the middle and at the end.
-double lowest_height(const ParticleSequence& sequence) {
-  double lowest = 0;
-  bool found = false;
+/// Particles at the beginning, in the middle and at the end: what pictures are to show.
+std::vector<Vec3> places_seen(const ParticleSequence& sequence) {
+  std::vector<Vec3> places;
   const std::size_t last = sequence.files.size() - 1;
   for (const std::size_t k : {std::size_t{0}, last / 2, last}) {
-    for (const Vec3& x : scenes::read_sequence_file(sequence, k).state.positions) {
-      lowest = found ? std::min(lowest, x.y()) : x.y();
-      found = true;
-    }
+    const std::vector<Vec3> positions = scenes::read_sequence_file(sequence, k).state.positions;
+    places.insert(places.end(), positions.begin(), positions.end());
   }
-  return lowest;
+  return places;
 }
 
 void set_pictures(const TrackOptions& options, const ParticleSequence& sequence, scenes::Scene& scene) {
+  const std::vector<Vec3> places = places_seen(sequence);
   if (options.up == "z") {
     scene.render.camera.up = {0, 0, 1};
     scene.texture.axis = {0, 0, 1};
     scene.render.light_direction = {-0.4, -0.5, 1.0};
     scene.render.ground = false;
   } else {
-    scene.render.ground_height = lowest_height(sequence) - scene.particles.spacing / 2;
+    scene.render.ground_height = bounds(places).min.y() - scene.particles.spacing / 2;
   }
+  const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
+  if (!places.empty()) scene.render.camera = place_camera(scene.render.camera, aspect, places);
 }
 
 scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) {
