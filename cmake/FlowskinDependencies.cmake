@@ -21,6 +21,7 @@ flowskin_find(fmt libfmt-dev)
 flowskin_find(spdlog libspdlog-dev)
 flowskin_find(embree libembree-dev 3)
 flowskin_find(CLI11 libcli11-dev)
+flowskin_find(ZLIB zlib1g-dev)
 
 # stb has no CMake package on Debian, only headers.
 find_path(FLOWSKIN_STB_INCLUDE_DIR stb_image_write.h PATH_SUFFIXES stb)

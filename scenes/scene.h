@@ -43,8 +43,10 @@ struct MotionSpec {
 };
 
 struct RecordedSpec {
-  std::string files;                 ///< Pattern such as run/particles/frame_*.ply, relative to the scene file.
-  double frame_interval = 1.0 / 30;  ///< s between files
+  /// Files, patterns such as run/particles/frame_*.ply, folders, or one .pvd; relative to the scene file.
+  std::vector<std::string> files;
+  double frame_interval = 0;      ///< s between files; 0: the times in the files, else 1/30 s
+  std::string ids = "automatic";  ///< automatic, order, none (docs/track.md)
 };
 
 struct ParticlesSpec {

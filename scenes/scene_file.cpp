@@ -29,7 +29,7 @@ void make_names_absolute(Scene& scene) {
   }
   std::string& image = scene.texture.image;
   if (image != "checker" && image != "marble") image = absolute_name(scene.directory, image);
-  scene.particles.recorded.files = absolute_name(scene.directory, scene.particles.recorded.files);
+  for (std::string& file : scene.particles.recorded.files) file = absolute_name(scene.directory, file);
 }
 
 }  // namespace

@@ -138,12 +138,18 @@ Table<Scene> particle_keys() {
       key<S>("particles.motion.velocity", at(particles, &P::motion, &MotionSpec::velocity), vector(1e4), "m/s",
              "Translation, which carries the whole motion along.")
           .only_for(for_prescribed, prescribed),
-      key<S>("particles.recorded.files", at(particles, &P::recorded, &RecordedSpec::files), text(), "",
-             "PLY files, as a pattern with * and ? or with %d or %04d, relative to the scene file.")
+      key<S>("particles.recorded.files", at(particles, &P::recorded, &RecordedSpec::files), texts(), "",
+             "Particle files (CSV, PLY, VTK, VTP): a pattern with *, ? or %04d, a folder, a .pvd, or a list of them, "
+             "relative to the scene file.")
           .is_required()
           .only_for(for_recorded, recorded),
       key<S>("particles.recorded.frame_interval", at(particles, &P::recorded, &RecordedSpec::frame_interval),
-             number(above(0, 1e5)), "s", "Time between files.")
+             number(at_least(0, 1e5)), "s", "Time between files; 0: the times in the files, else 1/30 s.")
+          .only_for(for_recorded, recorded),
+      key<S>("particles.recorded.ids", at(particles, &P::recorded, &RecordedSpec::ids),
+             choice({"automatic", "order", "none"}), "",
+             "Who is who from file to file: automatic takes the ids in the files or, where there are none, their order "
+             "if it seems to last.")
           .only_for(for_recorded, recorded),
   };
 }

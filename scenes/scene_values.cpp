@@ -138,6 +138,28 @@ Kind<std::array<double, 3>> color() {
           [](const Color& value, int) { return write_triple(value); }};
 }
 
+Kind<std::vector<std::string>> texts() {
+  const auto read = [one = text().read](const JsonNode& node) {
+    std::vector<std::string> list;
+    if (node.type == JsonNode::Type::text) return std::vector<std::string>{one(node)};
+    if (node.type != JsonNode::Type::list || node.children.empty()) throw Mismatch{describe(node), ""};
+    for (const JsonNode& child : node.children) {
+      if (child.type != JsonNode::Type::text) throw Mismatch{describe(child) + " in the list", "", child.offset};
+      list.push_back(one(child));
+    }
+    return list;
+  };
+  const auto write = [](const std::vector<std::string>& list, int indent) {
+    if (list.size() == 1) return quote_json(list.front());
+    std::string text = "[";
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      text += fmt::format("{}\n{:{}}{}", i > 0 ? "," : "", "", indent + 2, quote_json(list[i]));
+    }
+    return text + (list.empty() ? "]" : fmt::format("\n{:{}}]", "", indent));
+  };
+  return {"text or list of texts", read, write};
+}
+
 Kind<std::vector<Vec3>> points() {
   const auto read = [](const JsonNode& node) {
     if (node.type != JsonNode::Type::list) throw Mismatch{describe(node), ""};

@@ -50,6 +50,8 @@ Kind<int> integer(int min, int max);
 Kind<std::uint64_t> natural();
 Kind<bool> boolean();
 Kind<std::string> text();
+/// A text, or a list of texts.
+Kind<std::vector<std::string>> texts();
 /// One of the names; `type` replaces the list of names in the documentation, where given. No names: any text.
 Kind<std::string> choice(const std::vector<std::string>& names, const std::string& type = "");
 /// Three numbers, each within +-limit.

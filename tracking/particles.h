@@ -10,13 +10,16 @@ namespace flowskin::tracking {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-/// Particles at one time, in order of ascending id; all arrays have one entry a particle.
+/// Particles at one time, in order of ascending id; all arrays have one entry a particle. From a recording, less may be
+/// known: docs/track.md says what the tracker makes of it.
 struct Particles {
   double time = 0;  ///< s
   std::vector<std::uint64_t> ids;
   std::vector<Vec3> positions;       ///< m
-  std::vector<Vec3> velocities;      ///< m/s
-  std::vector<Vec3> rest_positions;  ///< Place of the material in the first frame (m).
+  std::vector<Vec3> velocities;      ///< m/s; empty: unknown
+  std::vector<Vec3> rest_positions;  ///< Place of the material in the first frame (m); empty: unknown.
+  std::vector<double> weights{};     ///< Share of each in the field; empty: 1 each.
+  bool has_lasting_ids = true;       ///< An id names the same particle in the next state; false: it only counts.
 };
 
 }  // namespace flowskin::tracking

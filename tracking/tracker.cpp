@@ -25,6 +25,8 @@ namespace {
 constexpr double kDefaultEdgeInSpacings = 0.75;
 constexpr int kMostSubsteps = 1000;
 constexpr int kUntanglingRounds = 4;
+constexpr double kLongestJump = 4;  // of a particle between two states, in effective radii
+constexpr double kFarReach = 2;     // of old material where particles know none, in effective radii
 
 // Adds the time until its end to a sum.
 class Stopwatch {
@@ -75,7 +77,7 @@ class TrackerImpl {
  public:
   TrackerImpl(TrackerSettings settings, const Particles& particles)
       : settings_(filled_in(std::move(settings))), method_(make_velocity_method(settings_.velocity)) {
-    check_particles(particles);
+    check(particles);
     particles_ = particles;
     rebuild_field();
     if (field_) adopt(extract_raw());
@@ -83,7 +85,7 @@ class TrackerImpl {
   }
 
   void advance(const Particles& particles) {
-    check_particles(particles);
+    check(particles);
     report_ = {};
     if (particles.positions.empty() || particles_.positions.empty() || mesh_.positions.empty()) {
       restart(particles);
@@ -103,11 +105,19 @@ class TrackerImpl {
   const TrackerSettings& settings() const { return settings_; }
 
  private:
+  void check(const Particles& particles) const {
+    check_particles(particles);
+    if (particles.velocities.empty() && !particles.positions.empty() && needs_particle_velocities(settings_.velocity)) {
+      throw std::invalid_argument(
+          "the velocity method \"" + settings_.velocity +
+          "\" needs the particles' velocities, which are unknown here; choose a method that goes "
+          "by the field alone, such as curvature");
+    }
+  }
+
   void rebuild_field() {
     field_.reset();
-    if (!particles_.positions.empty()) {
-      field_.emplace(particles_.positions, particles_.velocities, settings_.field);
-    }
+    if (!particles_.positions.empty()) field_.emplace(field_of(particles_, settings_.field));
   }
 
   SurfaceGeometry extract_raw() const { return extract_raw_surface(*field_, settings_.edge_length); }
@@ -124,6 +134,7 @@ class TrackerImpl {
     MaterialSettings material;
     material.reach = settings_.edge_length;
     material.same_vertex = settings_.edge_length / 3;
+    material.far_reach = kFarReach * settings_.field.radius;
     mesh_ = carry_material(mesh_, geometry, projection.normals, *field_, particles_, material);
     topology_ = build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
     rest_lengths_ = edge_lengths(topology_, mesh_.positions);
@@ -148,7 +159,9 @@ class TrackerImpl {
 
   // Carries the vertices to the time of the new particles, in substeps.
   void advect(const Particles& particles) {
-    const ParticlePaths paths(particles_, particles);
+    const ParticlePaths paths(particles_, particles, kLongestJump * settings_.field.radius);
+    report_.blended = paths.blended();
+    report_.mismatch = paths.mismatch();
     const double limit = settings_.max_motion * settings_.field.radius;
     report_.substeps =
         static_cast<int>(std::clamp(std::ceil(paths.longest_path() / limit), 1.0, double{kMostSubsteps}));
@@ -156,7 +169,12 @@ class TrackerImpl {
     const auto field_at = [&](double time) { return paths.field(time, settings_.field); };
     // The velocities of the last call hold at the start, unless particles come or go.
     std::vector<Vec3> first;
-    if (velocities_known_ && particles_.ids == particles.ids) first = mesh_.velocities;
+    if (paths.blended()) {
+      if (duration != 0)
+        field_.emplace(paths.field(paths.begin_time(), settings_.field));  // the same, but for its rates
+    } else if (velocities_known_ && particles_.ids == particles.ids) {
+      first = mesh_.velocities;
+    }
 
     for (int substep = 0; substep < report_.substeps && duration != 0; ++substep) {
       const double time = paths.begin_time() + duration * substep / report_.substeps;

@@ -31,8 +31,10 @@ struct TrackerSettings {
 /// What happened in the last call of Tracker::advance, and how well the mesh fits now.
 struct TrackerReport {
   int substeps = 0;
-  bool reextracted = false;                  ///< The guard replaced the mesh.
-  std::string reason;                        ///< Why, in words; empty where it did not.
+  bool blended = false;      ///< The field was blended between the two states, since paths are unknown (ParticlePaths).
+  double mismatch = 0;       ///< Of that blend (m), see ParticlePaths::mismatch.
+  bool reextracted = false;  ///< The guard replaced the mesh.
+  std::string reason;        ///< Why, in words; empty where it did not.
   int splits = 0, collapses = 0, flips = 0;  ///< Of the remeshing.
   int components = 0;                        ///< Of the mesh.
   int expected_components = 0;               ///< Of a fresh extraction.
@@ -49,13 +51,15 @@ class Tracker {
  public:
   /// Extracts the first mesh; its rest positions are those of its material: the positions themselves where the
   /// particles are at rest positions, else carried from the particles beneath.
-  /// @throws std::invalid_argument where a setting is impossible.
+  /// @throws std::invalid_argument where a setting is impossible, or the velocity method needs particle velocities and
+  /// there are none.
   Tracker(TrackerSettings settings, const Particles& particles);
   ~Tracker();
   Tracker(Tracker&&) noexcept;
   Tracker& operator=(Tracker&&) noexcept;
 
-  /// Carries the mesh from the particles of the last call (or of the constructor) to these.
+  /// Carries the mesh from the particles of the last call (or of the constructor) to these. Where their velocities are
+  /// unknown or their ids do not last, docs/track.md says what is exact and what is not.
   void advance(const Particles& particles);
 
   const SurfaceMesh& mesh() const;

@@ -1,8 +1,15 @@
-// Particles from the columns of a PLY file, whoever wrote it.
+// Particles from named columns, whoever wrote them.
+#include "scenes/io/particle_columns.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <numeric>
+#include <utility>
 
 #include "scenes/io/ply_reader.h"
 #include "scenes/scene_file.h"
@@ -11,21 +18,64 @@ namespace flowskin::scenes {
 namespace {
 
 using Column = std::vector<double>;
+using Names = std::initializer_list<const char*>;
+/// Columns by plain name.
+using Columns = std::map<std::string, const Column*>;
+
+const Names position_names = {"", "position", "positions", "pos", "points", "point", "p", "coordinates", "coords"};
+const Names velocity_names = {"v", "velocity", "velocities", "vel"};
+const Names rest_names = {"rest", "rest_position", "rest_positions", "restposition"};
+const Names id_names = {"id", "ids", "particle_id", "particle_ids", "particleid", "idp", "globalids", "global_id"};
+const Names radius_names = {"radius", "radii", "particle_radius", "pscale"};
+const Names density_names = {"density", "densities", "rho", "rhop"};
+
+/// @throws SceneError where two columns have the same plain name.
+Columns columns_by_plain_name(const ParticleTable& table, const std::string& name) {
+  Columns columns;
+  for (const auto& [written, column] : table.columns) {
+    if (!columns.emplace(plain_column_name(written), &column).second)
+      throw SceneError(fmt::format("{}: two columns are called \"{}\" (but for signs, case and units)", name,
+                                   plain_column_name(written)));
+  }
+  return columns;
+}
 
 /// The column of the first of these names that is there, or nullptr.
-const Column* find_column(const PlyFile& ply, std::initializer_list<const char*> names) {
+const Column* find_column(const Columns& columns, Names names) {
   for (const char* name : names)
-    if (const auto found = ply.vertex.find(name); found != ply.vertex.end()) return &found->second;
+    if (const auto found = columns.find(name); found != columns.end()) return found->second;
   return nullptr;
 }
 
+using Triple = std::array<const Column*, 3>;
+
+/// Three columns such as vx vy vz, vel_x vel_y vel_z, velocity_0 velocity_1 velocity_2; null where they are not there.
+/// @throws SceneError where only some of the three are there.
+Triple find_vector(const Columns& columns, Names names, const std::string& what, const std::string& name) {
+  for (const std::string base : names) {
+    for (const char* components : {"xyz", "012"}) {
+      for (const char* joint : {"", "_"}) {
+        if (base.empty() && (components[0] != 'x' || joint[0] != '\0')) continue;
+        Triple triple{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto found = columns.find(base + joint + components[k]);
+          if (found != columns.end()) triple[k] = found->second;
+        }
+        const auto present = std::count_if(triple.begin(), triple.end(), [](const Column* c) { return c != nullptr; });
+        if (present == 3) return triple;
+        // A lone "p0" or "v_x" may be anything; of the plain names and of two in three it is a slip.
+        if (present == 2 || (present == 1 && joint[0] == '\0' && components[0] == 'x'))
+          throw SceneError(name + ": only some components of the " + what + " are there; x, y and z were expected");
+      }
+    }
+  }
+  return {};
+}
+
 /// Three columns as vectors; `fallback` where they are not there.
-/// @throws SceneError where only some of the three are there, or a value is not finite.
-std::vector<Vec3> vectors(const std::array<const Column*, 3>& columns, const std::vector<Vec3>& fallback,
-                          const std::string& what, const std::string& name) {
-  const auto present = std::count_if(columns.begin(), columns.end(), [](const Column* c) { return c != nullptr; });
-  if (present == 0) return fallback;
-  if (present < 3) throw SceneError(name + ": only some components of the " + what + " are there, three were expected");
+std::vector<Vec3> vectors(const Triple& columns, std::vector<Vec3> fallback, const std::string& what,
+                          const std::string& name) {
+  if (columns[0] == nullptr) return fallback;
   std::vector<Vec3> result(columns[0]->size());
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i] = Vec3((*columns[0])[i], (*columns[1])[i], (*columns[2])[i]);
@@ -35,9 +85,8 @@ std::vector<Vec3> vectors(const std::array<const Column*, 3>& columns, const std
   return result;
 }
 
-std::vector<std::uint64_t> particle_ids(const PlyFile& ply, const std::string& name) {
-  std::vector<std::uint64_t> ids(ply.vertex_count);
-  const Column* column = find_column(ply, {"id", "ids", "particle_id"});
+std::vector<std::uint64_t> particle_ids(const Column* column, std::size_t count, const std::string& name) {
+  std::vector<std::uint64_t> ids(count);
   if (column == nullptr) {
     std::iota(ids.begin(), ids.end(), std::uint64_t{0});
     return ids;
@@ -77,35 +126,84 @@ void sort_by_id(ParticleState& state, const std::string& name) {
   state.densities = reordered(state.densities, order);
 }
 
+/// 0 where the column is missing or says nothing.
+double median_radius(const Column* column) {
+  if (column == nullptr || column->empty()) return 0;
+  Column radii = *column;
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  return std::isfinite(*middle) && *middle > 0 ? *middle : 0;
+}
+
 }  // namespace
+
+std::string plain_column_name(const std::string& name) {
+  const auto is_component = [](const std::string& text) {
+    return text.size() == 1 && std::string("xyzXYZ012").find(text[0]) != std::string::npos;
+  };
+  std::string plain;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    if (c == '[' || c == '(') {  // a unit, unless it names a component, as in P[0]
+      const std::size_t end = name.find(c == '[' ? ']' : ')', i);
+      if (end != std::string::npos && !is_component(name.substr(i + 1, end - i - 1))) {
+        i = end;
+        continue;
+      }
+    }
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (c >= 'A' && c <= 'Z') {
+      plain += static_cast<char>(c - 'A' + 'a');
+    } else if (is_letter) {
+      plain += c;
+    } else if (!plain.empty() && plain.back() != '_') {
+      plain += '_';
+    }
+  }
+  while (!plain.empty() && plain.back() == '_') plain.pop_back();
+  return plain;
+}
+
+ParticleFile particles_from_table(const ParticleTable& table, const std::string& name) {
+  const Columns columns = columns_by_plain_name(table, name);
+  const Triple place = find_vector(columns, position_names, "position", name);
+  if (place[0] == nullptr) {
+    std::vector<std::string> names;
+    for (const auto& column : table.columns) names.push_back(column.first);
+    throw SceneError(
+        fmt::format("{}: particles need the columns x, y and z; {}", name,
+                    names.empty() ? "there are none" : fmt::format("there are: {}", fmt::join(names, ", "))));
+  }
+  const Triple velocity = find_vector(columns, velocity_names, "velocity", name);
+  const Triple rest = find_vector(columns, rest_names, "rest position", name);
+  const Column* ids = find_column(columns, id_names);
+  const Column* densities = find_column(columns, density_names);
+
+  ParticleFile file;
+  file.has_ids = ids != nullptr;
+  file.has_velocities = velocity[0] != nullptr;
+  file.has_rest_positions = rest[0] != nullptr;
+  file.radius = median_radius(find_column(columns, radius_names));
+  if (file.radius == 0) file.radius = table.radius;
+  ParticleState& state = file.state;
+  state.ids = particle_ids(ids, table.count, name);
+  state.positions = vectors(place, {}, "position", name);
+  state.velocities = vectors(velocity, std::vector<Vec3>(table.count, Vec3::Zero()), "velocity", name);
+  state.rest_positions = vectors(rest, state.positions, "rest position", name);
+  state.densities = densities != nullptr ? *densities : Column(table.count, 0.0);
+  for (std::size_t i = 0; i < state.densities.size(); ++i)
+    if (!std::isfinite(state.densities[i]))
+      throw SceneError(name + ", particle " + std::to_string(i + 1) + ": the density is not finite");
+  if (file.has_ids) sort_by_id(state, name);
+  return file;
+}
 
 ParticleState particles_from_ply(const std::filesystem::path& file) {
   return particles_from_ply(read_ply(file), file.string());
 }
 
 ParticleState particles_from_ply(const PlyFile& ply, const std::string& name) {
-  const auto find = [&ply](std::initializer_list<const char*> names) { return find_column(ply, names); };
-  const std::array<const Column*, 3> place{find({"x"}), find({"y"}), find({"z"})};
-  if (std::find(place.begin(), place.end(), nullptr) != place.end())
-    throw SceneError(name + ": particles need the vertex properties x, y and z");
-
-  ParticleState state;
-  state.ids = particle_ids(ply, name);
-  state.positions = vectors(place, {}, "position", name);
-  state.velocities =
-      vectors({find({"vx", "velocity_x", "velocity_0", "v_x"}), find({"vy", "velocity_y", "velocity_1", "v_y"}),
-               find({"vz", "velocity_z", "velocity_2", "v_z"})},
-              std::vector<Vec3>(ply.vertex_count, Vec3::Zero()), "velocity", name);
-  state.rest_positions = vectors(
-      {find({"rest_x", "rest_position_x"}), find({"rest_y", "rest_position_y"}), find({"rest_z", "rest_position_z"})},
-      state.positions, "rest position", name);
-  const Column* densities = find({"density", "densities", "rho"});
-  state.densities = densities != nullptr ? *densities : Column(ply.vertex_count, 0.0);
-  for (std::size_t i = 0; i < state.densities.size(); ++i)
-    if (!std::isfinite(state.densities[i]))
-      throw SceneError(name + ", particle " + std::to_string(i + 1) + ": the density is not finite");
-  sort_by_id(state, name);
-  return state;
+  return particles_from_table(table_from_ply(ply), name).state;
 }
 
 }  // namespace flowskin::scenes

@@ -234,4 +234,22 @@ PlyFile parse_ply(std::string_view bytes, const std::string& name) {
   return ply;
 }
 
+ParticleTable table_from_ply(const PlyFile& ply) {
+  ParticleTable table;
+  table.format = "PLY";
+  table.count = ply.vertex_count;
+  table.columns = ply.vertex;
+  table.polygons = ply.triangles.size();
+  for (const std::string& comment : ply.comments) {
+    std::string_view rest = comment;
+    const std::string_view keyword = take_word(rest);
+    skip_space(rest);
+    double value = 0;
+    if (!take_number(rest, value)) continue;
+    if (keyword == "time") table.time = value;
+    if (keyword == "radius" && value > 0) table.radius = value;
+  }
+  return table;
+}
+
 }  // namespace flowskin::scenes

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenes/io/particle_table.h"
 #include "scenes/sources/particle_source.h"
 
 namespace flowskin::scenes {
@@ -24,6 +25,9 @@ struct PlyFile {
 PlyFile read_ply(const std::filesystem::path& file);
 /// The same from bytes in memory; `name` stands for the file in messages.
 PlyFile parse_ply(std::string_view bytes, const std::string& name);
+
+/// The vertex element as particles; comments such as "time 0.5" and "radius 0.01" are understood (s, m).
+ParticleTable table_from_ply(const PlyFile& ply);
 
 /// Particles from columns x, y, z and, where present, vx, vy, vz (or velocity_x, ...), rest_x, rest_y, rest_z, id,
 /// density.

@@ -3,18 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <regex>
 
+#include "scenes/io/particle_file.h"
 #include "scenes/nearest_name.h"
 #include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
 
+using Paths = std::vector<std::filesystem::path>;
+
+/// Numbers with more gaps than this are no frame numbers: then files follow each other at once.
+constexpr std::uint64_t most_steps_per_file = 4;
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The pattern as a regular expression with one group a wildcard.
+/// The pattern as a regular expression.
 std::regex pattern_expression(const std::string& pattern) {
   static const std::regex printf_number("%[0-9]*d");
   std::string expression;
@@ -23,11 +30,11 @@ std::regex pattern_expression(const std::string& pattern) {
     std::smatch match;
     const std::string rest = pattern.substr(i);
     if (c == '*') {
-      expression += "(.*)";
+      expression += ".*";
     } else if (c == '?') {
-      expression += "(.)";
+      expression += ".";
     } else if (std::regex_search(rest, match, printf_number, std::regex_constants::match_continuous)) {
-      expression += "([0-9]+)";
+      expression += "[0-9]+";
       i += static_cast<std::size_t>(match.length()) - 1;
     } else {
       if (std::string("^$\\.+()[]{}|").find(c) != std::string::npos) expression += '\\';
@@ -37,18 +44,22 @@ std::regex pattern_expression(const std::string& pattern) {
   return std::regex(expression);
 }
 
-struct NumberedFile {
-  std::filesystem::path path;
-  std::string name;
-  std::string digits;  ///< What the wildcards stand for, without leading zeros, where that is a number; else "".
-};
-
-std::string number_of(const std::smatch& match) {
-  std::string captured;
-  for (std::size_t i = 1; i < match.size(); ++i) captured += match.str(i);
-  if (captured.empty() || !std::all_of(captured.begin(), captured.end(), is_digit)) return "";
-  const std::size_t first = captured.find_first_not_of('0');
-  return first == std::string::npos ? "0" : captured.substr(first);
+/// A name as text and runs of digits in turn, text first; runs without leading zeros.
+std::vector<std::string> split_at_digits(const std::string& name) {
+  std::vector<std::string> parts(1);
+  for (std::size_t i = 0; i < name.size();) {
+    if (!is_digit(name[i])) {
+      parts.back() += name[i++];
+      continue;
+    }
+    std::size_t end = i;
+    while (end < name.size() && is_digit(name[end])) ++end;
+    while (i + 1 < end && name[i] == '0') ++i;
+    parts.push_back(name.substr(i, end - i));
+    parts.emplace_back();
+    i = end;
+  }
+  return parts;
 }
 
 bool number_less(const std::string& a, const std::string& b) {
@@ -56,84 +67,144 @@ bool number_less(const std::string& a, const std::string& b) {
 }
 
 /// Runs of digits are compared as numbers, the rest letter by letter.
-bool natural_less(const std::string& a, const std::string& b) {
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (is_digit(a[i]) && is_digit(b[j])) {
-      const auto run = [](const std::string& s, std::size_t& k) {
-        while (k + 1 < s.size() && s[k] == '0' && is_digit(s[k + 1])) ++k;
-        const std::size_t start = k;
-        while (k < s.size() && is_digit(s[k])) ++k;
-        return s.substr(start, k - start);
-      };
-      const std::string x = run(a, i), y = run(b, j);
-      if (x != y) return number_less(x, y);
-    } else {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i;
-      ++j;
-    }
+bool natural_less(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const auto x = split_at_digits(a.filename().string()), y = split_at_digits(b.filename().string());
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+    if (x[i] != y[i]) return i % 2 == 1 ? number_less(x[i], y[i]) : x[i] < y[i];
   }
-  return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
+  return x.size() != y.size() ? x.size() < y.size() : a < b;
 }
 
-void check_numbering(const std::vector<NumberedFile>& files) {
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    const std::string &last = files[i - 1].digits, &next = files[i].digits;
-    if (last == next) {
-      throw SceneError(fmt::format("{}: has the same number as {}; a sequence has one file a number",
-                                   files[i].path.string(), files[i - 1].name));
-    }
-    // Numbers of more than 18 digits are time stamps, not counters.
-    if (next.size() <= 18 && std::stoull(next) != std::stoull(last) + 1) {
-      throw SceneError(
-          fmt::format("{}: follows {} but {} files in between are missing; a sequence has no gaps in its numbers",
-                      files[i].path.string(), files[i - 1].name, std::stoull(next) - std::stoull(last) - 1));
+/// The one run of digits in which the names differ, of each name; empty where there is no such run.
+std::vector<std::string> numbers_of(const Paths& paths) {
+  std::vector<std::vector<std::string>> names;
+  for (const auto& path : paths) names.push_back(split_at_digits(path.filename().string()));
+  std::optional<std::size_t> varying;
+  for (const auto& name : names) {
+    if (name.size() != names.front().size()) return {};
+    for (std::size_t i = 0; i < name.size(); ++i) {
+      if (name[i] == names.front()[i]) continue;
+      if (i % 2 == 0 || (varying && *varying != i)) return {};
+      varying = i;
     }
   }
+  std::vector<std::string> numbers;
+  for (const auto& name : names)
+    if (varying) numbers.push_back(name[*varying]);
+  return numbers;
 }
 
-std::vector<NumberedFile> matching_files(const std::filesystem::path& pattern) {
-  const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
-  const std::regex expression = pattern_expression(pattern.filename().string());
-  std::vector<NumberedFile> files;
-  std::vector<std::string> names;
+/// Names of files in a folder; empty where it cannot be looked into.
+std::optional<std::vector<std::string>> names_in(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::directory_iterator entry(folder, error);
-  if (error) throw SceneError(fmt::format("{}: cannot look into the folder {}", pattern.string(), folder.string()));
+  if (error) return std::nullopt;
+  std::vector<std::string> names;
   for (const std::filesystem::directory_iterator end; entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    std::smatch match;
-    if (entry->is_regular_file(error)) names.push_back(name);
-    if (!entry->is_directory(error) && std::regex_match(name, match, expression)) {
-      files.push_back({entry->path(), name, number_of(match)});
-    }
+    std::error_code ignored;
+    if (!entry->is_directory(ignored)) names.push_back(entry->path().filename().string());
   }
-  if (files.empty()) {
-    std::sort(names.begin(), names.end());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Paths files_in_folder(const std::filesystem::path& folder) {
+  Paths paths;
+  std::vector<std::string> extensions;
+  for (const std::string& name : names_in(folder).value_or(std::vector<std::string>{})) {
+    const std::filesystem::path path = folder / name;
+    if (!is_particle_extension(path.extension().string())) continue;
+    paths.push_back(path);
+    extensions.push_back(path.extension().string());
+  }
+  if (paths.empty())
     throw SceneError(
-        fmt::format("{}: no file matches{}", pattern.string(), did_you_mean(pattern.filename().string(), names)));
+        fmt::format("{}: this folder holds no particle files ({})", folder.string(), particle_extensions()));
+  std::sort(extensions.begin(), extensions.end());
+  if (extensions.front() != extensions.back())
+    throw SceneError(fmt::format("{}: this folder holds {} and {} files; name one kind, for example '{}/*{}'",
+                                 folder.string(), extensions.front(), extensions.back(), folder.string(),
+                                 extensions.front()));
+  return paths;
+}
+
+Paths matching_files(const std::filesystem::path& pattern) {
+  std::error_code error;
+  if (std::filesystem::is_directory(pattern, error)) return files_in_folder(pattern);
+  if (std::filesystem::exists(pattern, error)) return {pattern};
+  const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
+  const auto names = names_in(folder);
+  if (!names) throw SceneError(fmt::format("{}: cannot look into the folder {}", pattern.string(), folder.string()));
+  const std::regex expression = pattern_expression(pattern.filename().string());
+  Paths paths;
+  for (const std::string& name : *names)
+    if (std::regex_match(name, expression)) paths.push_back(folder / name);
+  if (paths.empty()) {
+    throw SceneError(
+        fmt::format("{}: no file matches{}", pattern.string(), did_you_mean(pattern.filename().string(), *names)));
   }
-  return files;
+  return paths;
+}
+
+void check_formats(const Paths& paths) {
+  for (const auto& path : paths) {
+    if (path.extension() != paths.front().extension())
+      throw SceneError(fmt::format("{}: follows {}; the files of a sequence have one format, name those of one kind",
+                                   path.string(), paths.front().filename().string()));
+  }
+}
+
+/// Steps from the numbers, which ascend; without gaps where the numbers are no frame numbers.
+void count_steps(const std::vector<std::uint64_t>& numbers, NumberedFiles& files) {
+  std::uint64_t stride = 0;
+  for (std::size_t i = 1; i < numbers.size(); ++i) stride = std::gcd(stride, numbers[i] - numbers[i - 1]);
+  const std::uint64_t steps = stride > 0 ? (numbers.back() - numbers.front()) / stride : 0;
+  if (steps > most_steps_per_file * numbers.size()) {
+    files.missing = "";
+    return;
+  }
+  std::string first_gap;
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    files.steps[i] = (numbers[i] - numbers.front()) / stride;
+    if (first_gap.empty() && files.steps[i] > files.steps[i - 1] + 1)
+      first_gap = files.paths[i - 1].filename().string();
+  }
+  const std::uint64_t missing = steps + 1 - numbers.size();
+  if (missing > 0)
+    files.missing =
+        fmt::format("{} of {} files are missing by their numbers (the first after {})", missing, steps + 1, first_gap);
 }
 
 }  // namespace
 
-std::vector<std::filesystem::path> files_of_pattern(const std::string& pattern) {
-  std::error_code error;
-  if (std::filesystem::is_directory(pattern, error)) {
-    throw SceneError(fmt::format("{}: this is a folder; name its files, for example {}/*.ply", pattern, pattern));
+NumberedFiles files_of_patterns(const std::vector<std::string>& names) {
+  NumberedFiles files;
+  for (const std::string& name : names) {
+    const Paths found = matching_files(name);
+    files.paths.insert(files.paths.end(), found.begin(), found.end());
   }
-  std::vector<NumberedFile> files = matching_files(pattern);
-  const bool numbered =
-      std::all_of(files.begin(), files.end(), [](const NumberedFile& file) { return !file.digits.empty(); });
-  std::sort(files.begin(), files.end(), [numbered](const NumberedFile& a, const NumberedFile& b) {
-    return numbered && a.digits != b.digits ? number_less(a.digits, b.digits) : natural_less(a.name, b.name);
-  });
-  if (numbered) check_numbering(files);
-  std::vector<std::filesystem::path> paths;
-  for (const NumberedFile& file : files) paths.push_back(file.path);
-  return paths;
+  if (files.paths.empty()) throw SceneError("no particle files are given");
+  std::sort(files.paths.begin(), files.paths.end(), natural_less);
+  const auto twice = std::adjacent_find(files.paths.begin(), files.paths.end());
+  if (twice != files.paths.end()) throw SceneError(twice->string() + ": is given twice");
+  check_formats(files.paths);
+  files.steps.resize(files.paths.size());
+  std::iota(files.steps.begin(), files.steps.end(), std::uint64_t{0});
+
+  std::vector<std::uint64_t> numbers;
+  const std::vector<std::string> digits = numbers_of(files.paths);
+  for (std::size_t i = 0; i + 1 < files.paths.size(); ++i) {
+    const auto a = split_at_digits(files.paths[i].filename().string());
+    if (a == split_at_digits(files.paths[i + 1].filename().string()))
+      throw SceneError(fmt::format("{}: has the same number as {}; a sequence has one file a number",
+                                   files.paths[i + 1].string(), files.paths[i].string()));
+  }
+  for (const std::string& number : digits) {
+    if (number.size() > 18) return files;  // a time stamp, not a counter
+    numbers.push_back(std::stoull(number));
+  }
+  if (!numbers.empty()) count_steps(numbers, files);
+  return files;
 }
 
 }  // namespace flowskin::scenes

@@ -1,16 +1,26 @@
 // File names of a numbered sequence.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace flowskin::scenes {
 
-/// The files that match a pattern whose last part may hold * (any letters), ? (one letter), %d or %04d (a number), in
-/// the order of their numbers; where what the wildcards stand for is no number, in natural order (a2 before a10).
-/// @throws SceneError where no file matches, the pattern names a folder, two files have the same number, or a number in
-/// between is missing.
-std::vector<std::filesystem::path> files_of_pattern(const std::string& pattern);
+/// Files in the order of their numbers.
+struct NumberedFiles {
+  std::vector<std::filesystem::path> paths;
+  /// How many intervals a file is after the first one: 0, 1, 2, ... where none is missing. The interval is the largest
+  /// one that fits all numbers, so that files 0, 10, 20, 40 are at 0, 1, 2 and 4.
+  std::vector<std::uint64_t> steps;
+  std::string missing;  ///< In words, such as "3 files are missing (after f_2.ply)"; empty where none is.
+};
+
+/// The files of all names, each of which is a file, a folder (all particle files in it), or a pattern whose last part
+/// may hold * (any letters), ? (one letter), %d or %04d (a number). The number is the one run of digits in which the
+/// names differ; where there is no such run, natural order counts (a2 before a10) and none is missing.
+/// @throws SceneError where there are no such files, two files have the same number, or their formats are mixed.
+NumberedFiles files_of_patterns(const std::vector<std::string>& names);
 
 }  // namespace flowskin::scenes

@@ -20,6 +20,12 @@ struct ParticleState {
   std::vector<Vec3> velocities;      ///< m/s
   std::vector<Vec3> rest_positions;  ///< Place of the material in the first frame (m).
   std::vector<double> densities;     ///< kg/m^3; 0 where the source knows none
+  /// Share of each particle in the field, where two recorded states are blended; empty: all of each.
+  std::vector<double> weights{};
+  std::size_t earlier_count = 0;  ///< Of blended states: so many particles, the first, are of the earlier one.
+  bool has_velocities = true;     ///< false: nobody knows them, they are zero
+  bool has_material = true;       ///< false: rest positions are unknown and stand for the positions
+  bool has_lasting_ids = true;    ///< false: ids do not name the same particle in the next state
 };
 
 /// What a source tells about itself in the log and in frames.csv; zero where it does not apply.

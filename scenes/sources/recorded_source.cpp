@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "scenes/io/ply_reader.h"
-#include "scenes/scene_checks.h"
 #include "scenes/scene_file.h"
-#include "scenes/sources/file_pattern.h"
 #include "scenes/sources/forward_time.h"
+#include "scenes/sources/particle_spacing.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -17,9 +16,9 @@ namespace {
 /// A time this near to a file's (in frame intervals) is the file's: rounding of frame times must not interpolate.
 constexpr double same_time = 1e-9;
 
-bool has_column(const PlyFile& ply, std::initializer_list<const char*> names) {
-  return std::any_of(names.begin(), names.end(), [&](const char* name) { return ply.vertex.count(name) > 0; });
-}
+/// A particle that goes farther than this (in spacings), and this many times as far as nine in ten do, has not moved:
+/// it was taken out here and put in there (at a periodic boundary, say).
+constexpr double jump_in_spacings = 10, jump_in_usual_paths = 8;
 
 /// Calls visit(i, j) for all ids of two states in ascending order; -1 where the id is in the other one only.
 template <class Visit>
@@ -64,35 +63,88 @@ ParticleState between(const ParticleState& a, const ParticleState& b, double s, 
   return state;
 }
 
+/// The particles of both states, each moved by its velocity, weighted by how near the states are.
+ParticleState blended(const ParticleState& a, const ParticleState& b, double s, double interval) {
+  ParticleState state;
+  const auto add = [&](const ParticleState& from, double weight, double duration) {
+    for (std::size_t i = 0; i < from.ids.size(); ++i) {
+      append(state, from, i, from.positions[i] + duration * from.velocities[i], from.velocities[i], from.densities[i]);
+      state.ids.back() = state.weights.size();
+      state.weights.push_back(weight);
+    }
+  };
+  add(a, 1 - s, s * interval);
+  state.earlier_count = state.ids.size();
+  add(b, s, (s - 1) * interval);
+  return state;
+}
+
+/// A particle's place in another file.
+struct Sighting {
+  double time;  // from the file in question (s)
+  Vec3 position;
+};
+
+/// Adds where the particles are in another file, a time `time` away, except those that jumped.
+void add_sightings(const ParticleState& here, const ParticleState& other, double time, double spacing,
+                   std::vector<std::vector<Sighting>>& sightings) {
+  std::vector<double> paths;
+  match_ids(here, other, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+    if (i >= 0 && j >= 0) paths.push_back((other.positions[j] - here.positions[i]).norm());
+  });
+  const double longest = std::max(jump_in_spacings * spacing, jump_in_usual_paths * quantile(paths, 0.9));
+  match_ids(here, other, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+    if (i < 0 || j < 0 || (other.positions[j] - here.positions[i]).norm() > longest) return;
+    sightings[i].push_back({time, other.positions[j]});
+  });
+}
+
+/// Derivative at time 0 of the polynomial through a place at time 0 and up to two others.
+Vec3 velocity_through(const Vec3& here, const std::vector<Sighting>& others) {
+  if (others.empty()) return Vec3::Zero();
+  const double a = others[0].time;
+  const Vec3 slope_a = (others[0].position - here) / a;
+  if (others.size() == 1) return slope_a;
+  const double b = others[1].time;
+  const Vec3 slope_b = (others[1].position - here) / b;
+  return (b * slope_a - a * slope_b) / (b - a);
+}
+
 }  // namespace
 
 RecordedSource::RecordedSource(const Scene& scene)
-    : files_(files_of_pattern(absolute_name(scene.directory, scene.particles.recorded.files))),
-      interval_(scene.particles.recorded.frame_interval),
-      spacing_(scene.particles.spacing) {
-  const PlyFile first = read_ply(files_.front());
-  first_count_ = first.vertex_count;
-  has_ids_ = has_column(first, {"id", "ids", "particle_id"});
-  has_velocities_ = has_column(first, {"vx", "velocity_x", "velocity_0", "v_x"});
-  has_rest_positions_ = has_column(first, {"rest_x", "rest_position_x"});
+    : sequence_(open_sequence(scene.particles.recorded, scene.directory)), spacing_(scene.particles.spacing) {
   advance_to(0);
 }
 
 bool RecordedSource::ends_before(double time) const {
-  return time / interval_ > static_cast<double>(files_.size() - 1) + same_time;
+  return time > sequence_.times.back() + same_time * sequence_.interval;
 }
 
 void RecordedSource::advance_to(double time) {
   require_forward(state_.time, time);
+  const std::vector<double>& times = sequence_.times;
   if (ends_before(time)) {
     throw SceneError(
         fmt::format("{}: the recorded sequence of {} files ends at {:.6g} s, before {:.6g} s; ask for fewer frames",
-                    files_.back().string(), files_.size(), static_cast<double>(files_.size() - 1) * interval_, time));
+                    sequence_.files.back().string(), times.size(), times.back(), time));
   }
-  const auto k = std::min(files_.size() - 1, static_cast<std::size_t>(time / interval_ + same_time));
-  const double share = time / interval_ - static_cast<double>(k);
+  const double tolerance = same_time * sequence_.interval;
+  const auto after = std::upper_bound(times.begin(), times.end(), time + tolerance);
+  const auto k = static_cast<std::size_t>(after - times.begin()) - 1;
+  const double elapsed = time - times[k];
   const ParticleState here = complete_state(k);
-  state_ = share <= same_time ? here : between(here, complete_state(k + 1), share, interval_);
+  if (elapsed <= tolerance) {
+    state_ = here;
+  } else {
+    const double interval = times[k + 1] - times[k];
+    const ParticleState next = complete_state(k + 1);
+    state_ = has_lasting_ids() ? between(here, next, elapsed / interval, interval)
+                               : blended(here, next, elapsed / interval, interval);
+  }
+  state_.has_lasting_ids = has_lasting_ids();
+  state_.has_velocities = has_lasting_ids() || sequence_.first.has_velocities;
+  state_.has_material = has_lasting_ids() || sequence_.first.has_rest_positions;
   state_.time = time;
 }
 
@@ -101,55 +153,53 @@ const ParticleState& RecordedSource::file_state(std::size_t k) {
   if (found != cache_.end()) return found->second;
   // Rest positions are those of the first appearance, so no file may be left out on the way.
   const std::size_t next = cache_.empty() ? 0 : cache_.rbegin()->first + 1;
-  for (std::size_t i = has_rest_positions_ ? std::max(next, k) : next; i <= k; ++i) {
-    ParticleState state = particles_from_ply(files_[i]);
-    if (!has_ids_ && state.ids.size() != first_count_) {
-      throw SceneError(
-          fmt::format("{}: {} particles where the first file has {}, and they have no ids (property \"id\") to "
-                      "find them again by",
-                      files_[i].string(), state.ids.size(), first_count_));
-    }
+  const bool may_skip = sequence_.first.has_rest_positions || !has_lasting_ids();
+  for (std::size_t i = may_skip ? std::max(next, k) : next; i <= k; ++i) {
+    ParticleState state = read_sequence_file(sequence_, i).state;
+    if (sequence_.ids != ParticleSequence::Ids::of_files) std::iota(state.ids.begin(), state.ids.end(), 0);
     settle_rest_positions(state);
     cache_[i] = std::move(state);
-    while (cache_.size() > 4) cache_.erase(cache_.begin());
+    while (cache_.size() > 5) cache_.erase(cache_.begin());
   }
   return cache_.at(k);
 }
 
 void RecordedSource::settle_rest_positions(ParticleState& state) {
-  if (has_rest_positions_) return;
+  if (sequence_.first.has_rest_positions || !has_lasting_ids()) return;
   for (std::size_t i = 0; i < state.ids.size(); ++i) {
     state.rest_positions[i] = rest_positions_.emplace(state.ids[i], state.positions[i]).first->second;
   }
 }
 
 ParticleState RecordedSource::complete_state(std::size_t k) {
-  if (has_velocities_) return file_state(k);
-  // In ascending order, so that the files read last stay in the cache.
-  const ParticleState before = k > 0 ? file_state(k - 1) : ParticleState{};
+  if (sequence_.first.has_velocities || !has_lasting_ids()) return file_state(k);
+  // The two files next to k, in ascending order, so that the files read last stay in the cache.
+  const std::size_t count = sequence_.files.size();
+  const std::size_t low = std::min(k > 0 ? k - 1 : 0, count > 3 ? count - 3 : 0), high = std::min(low + 2, count - 1);
+  for (std::size_t i = low; i <= high; ++i) file_state(i);
   ParticleState here = file_state(k);
-  const ParticleState after = k + 1 < files_.size() ? file_state(k + 1) : ParticleState{};
-  std::vector<double> span(here.ids.size(), 0.0);
-  for (Vec3& velocity : here.velocities) velocity.setZero();
-  const auto add_difference = [&](const ParticleState& other, double sign) {
-    match_ids(here, other, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
-      if (i < 0 || j < 0) return;
-      here.velocities[i] += sign * (other.positions[j] - here.positions[i]);
-      span[i] += interval_;
-    });
-  };
-  add_difference(before, -1);
-  add_difference(after, 1);
-  for (std::size_t i = 0; i < span.size(); ++i) {
-    if (span[i] > 0) here.velocities[i] /= span[i];
+  std::vector<std::vector<Sighting>> sightings(here.ids.size());
+  for (std::size_t i = low; i <= high; ++i) {
+    if (i != k) add_sightings(here, file_state(i), sequence_.times[i] - sequence_.times[k], spacing_, sightings);
   }
+  for (std::size_t i = 0; i < here.ids.size(); ++i)
+    here.velocities[i] = velocity_through(here.positions[i], sightings[i]);
   return here;
 }
 
 SourceStatistics RecordedSource::statistics() const {
+  using Ids = ParticleSequence::Ids;
   SourceStatistics statistics;
-  statistics.summary = fmt::format("recorded sequence: {} files from {}, one every {:.4g} s, {} particles in the first",
-                                   files_.size(), files_.front().string(), interval_, first_count_);
+  statistics.summary = fmt::format(
+      "recorded sequence: {} files from {}, one every {:.4g} s, {} particles in the first, {}, velocities {}",
+      sequence_.files.size(), sequence_.files.front().string(), sequence_.interval,
+      sequence_.first.state.positions.size(),
+      sequence_.ids == Ids::of_files ? "ids as recorded"
+      : sequence_.ids == Ids::order  ? "their order as ids"
+                                     : "no ids: each two states are blended",
+      sequence_.first.has_velocities ? "as recorded"
+      : has_lasting_ids()            ? "from differences"
+                                     : "unknown");
   return statistics;
 }
 

@@ -10,6 +10,8 @@
 #include "scene_file_helpers.h"
 #include "scenes/sources/file_pattern.h"
 #include "scenes/sources/make_source.h"
+#include "scenes/sources/particle_sequence.h"
+#include "scenes/sources/particle_spacing.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -57,18 +59,23 @@ class RecordedSourceTest : public testing::Test {
     std::ofstream(folder_ / name) << text;
   }
 
-  std::unique_ptr<ParticleSource> open(const std::string& pattern, double interval = 0.5) const {
+  std::unique_ptr<ParticleSource> open(const std::string& pattern, double interval = 0.5,
+                                       const std::string& ids = "automatic") const {
     Scene scene;
     scene.directory = folder_.string();
     scene.particles.source = ParticlesSpec::Source::recorded;
     scene.particles.spacing = 0.1;
-    scene.particles.recorded = {pattern, interval};
+    scene.particles.recorded = {{pattern}, interval, ids};
     return make_source(scene);
   }
 
   std::string error_of_pattern(const std::string& pattern) const {
+    return error_of([&] { open(pattern); });
+  }
+  template <class Action>
+  static std::string error_of(const Action& action) {
     try {
-      open(pattern);
+      action();
     } catch (const SceneError& error) {
       return error.what();
     }
@@ -115,12 +122,12 @@ TEST_F(RecordedSourceTest, InterpolatesByIdWithCubicHermiteCurves) {
 }
 
 TEST_F(RecordedSourceTest, MakesUpForMissingVelocitiesAndRestPositions) {
-  // x = t^2 at t = 0, 1, 2, 3: differences are central inside, one-sided at the ends.
+  // x = t^2 at t = 0, 1, 2, 3: differences over three files are exact, at the ends as well.
   for (int k = 0; k < 4; ++k) {
     write(fmt::format("f_{:04}.ply", k), {{0, Vec3(k * k, 0, 0)}, {0, Vec3(0, 1, k)}}, positions_only);
   }
   const auto source = open("f_%04d.ply", 1.0);
-  const double expected[] = {1, 2, 4, 5};
+  const double expected[] = {0, 2, 4, 6};
   for (int k = 0; k < 4; ++k) {
     source->advance_to(k);
     EXPECT_NEAR(source->state().velocities[0].x(), expected[k], 1e-12);
@@ -159,18 +166,27 @@ TEST_F(RecordedSourceTest, WrongSequencesAreErrors) {
   write("gap_1.ply", one, with_ids);
   write("gap_2.ply", one, with_ids);
   write("gap_5.ply", one, with_ids);
-  EXPECT_THAT(error_of_pattern("gap_*.ply"),
-              AllOf(HasSubstr("gap_5.ply"), HasSubstr("gap_2.ply"), HasSubstr("2 files")));
   write("same_1.ply", one, with_ids);
   write("same_01.ply", one, with_ids);
   EXPECT_THAT(error_of_pattern("same_*.ply"), HasSubstr("same number"));
   EXPECT_THAT(error_of_pattern("gapp_1.ply"),
               AllOf(HasSubstr("no file matches"), HasSubstr("did you mean \"gap_1.ply\"?")));
   EXPECT_THAT(error_of_pattern("nowhere/f_*.ply"), HasSubstr("cannot look into the folder"));
-  EXPECT_THAT(error_of_pattern("."), AllOf(HasSubstr("folder"), HasSubstr("*.ply")));
+  std::filesystem::create_directories(folder_ / "mixed");
+  write("mixed/a_1.ply", one, with_ids);
+  std::ofstream(folder_ / "mixed" / "a_1.csv") << "x,y,z\n1,2,3\n";
+  EXPECT_THAT(error_of_pattern("mixed"), AllOf(HasSubstr(".csv and .ply"), HasSubstr("one kind")));
+  EXPECT_THAT(error_of_pattern("mixed/*"), HasSubstr("one format"));
+  std::filesystem::create_directories(folder_ / "none");
+  EXPECT_THAT(error_of_pattern("none"), HasSubstr("no particle files"));
   write("n_1.ply", one, positions_only);
   write("n_2.ply", two, positions_only);
-  EXPECT_THAT(error_of_pattern("n_*.ply"), AllOf(HasSubstr("n_2.ply"), HasSubstr("no ids")));
+  EXPECT_THAT(error_of([&] { open("n_*.ply", 0.5, "order")->advance_to(0.5); }),
+              AllOf(HasSubstr("n_2.ply"), HasSubstr("no ids")));
+  write("c_1.ply", one, with_ids | with_velocities);
+  write("c_2.ply", one, with_ids);
+  EXPECT_THAT(error_of([&] { open("c_*.ply")->advance_to(0.5); }),
+              AllOf(HasSubstr("c_2.ply"), HasSubstr("velocities"), HasSubstr("c_1.ply")));
   std::ofstream(folder_ / "bad.ply") << "this is no ply";
   EXPECT_THAT(error_of_pattern("bad.ply"), HasSubstr("bad.ply"));
 }
@@ -179,18 +195,129 @@ TEST_F(RecordedSourceTest, FilesAreOrderedByNumberOrNaturally) {
   for (const char* name : {"f2.ply", "f10.ply", "f9.ply", "f3.ply", "f4.ply", "f5.ply", "f6.ply", "f7.ply", "f8.ply"}) {
     std::ofstream(folder_ / name) << " ";
   }
-  const auto files = files_of_pattern((folder_ / "f*.ply").string());
+  const auto files = files_of_patterns({(folder_ / "f*.ply").string()}).paths;
   ASSERT_EQ(files.size(), 9u);
   EXPECT_EQ(files.front().filename(), "f2.ply");
   EXPECT_EQ(files.back().filename(), "f10.ply");
+  // As a shell writes a list, and as a folder.
+  EXPECT_EQ(files_of_patterns({files[8].string(), files[0].string(), files[1].string()}).paths,
+            (std::vector<std::filesystem::path>{files[0], files[1], files[8]}));
+  EXPECT_EQ(files_of_patterns({folder_.string()}).paths, files);
+  EXPECT_THROW(files_of_patterns({files[0].string(), files[0].string()}), SceneError);
   for (const char* name : {"take10_b.x", "take2_b.x", "take2_a.x"}) std::ofstream(folder_ / name) << " ";
-  const auto takes = files_of_pattern((folder_ / "take*.x").string());
+  const auto takes = files_of_patterns({(folder_ / "take*.x").string()}).paths;
   ASSERT_EQ(takes.size(), 3u);
   EXPECT_EQ(takes[0].filename(), "take2_a.x");
   EXPECT_EQ(takes[2].filename(), "take10_b.x");
   // Letters that mean something in regular expressions mean themselves.
   std::ofstream(folder_ / "a+(b)[1].x") << " ";
-  EXPECT_EQ(files_of_pattern((folder_ / "a+(b)[%d].x").string()).size(), 1u);
+  EXPECT_EQ(files_of_patterns({(folder_ / "a+(b)[%d].x").string()}).paths.size(), 1u);
+}
+
+TEST_F(RecordedSourceTest, GapsInTheNumbersAreMissingFiles) {
+  for (const int k : {0, 10, 20, 50})
+    write(fmt::format("g_{}.ply", k), cubic_particles({1, 2}, k / 50.0), with_ids | with_velocities);
+  const NumberedFiles files = files_of_patterns({(folder_ / "g_*.ply").string()});
+  EXPECT_EQ(files.steps, (std::vector<std::uint64_t>{0, 1, 2, 5}));
+  EXPECT_THAT(files.missing, AllOf(HasSubstr("2 of 6"), HasSubstr("g_20.ply")));
+  const auto source = open("g_*.ply", 0.2);
+  EXPECT_FALSE(source->ends_before(1.0));
+  EXPECT_TRUE(source->ends_before(1.001));
+  for (const double time : {0.2, 0.6, 0.75, 1.0}) {  // Hermite curves are exact for the cubic paths
+    source->advance_to(time);
+    EXPECT_LT((source->state().positions[1] - cubic(2, time)).norm(), 1e-12);
+  }
+  // Time steps of a solver are no frame numbers.
+  for (const int k : {1033, 2071, 3110}) std::ofstream(folder_ / fmt::format("step_{}.csv", k)) << "x,y,z\n1,2,3\n";
+  const NumberedFiles steps = files_of_patterns({(folder_ / "step_*.csv").string()});
+  EXPECT_EQ(steps.steps, (std::vector<std::uint64_t>{0, 1, 2}));
+  EXPECT_EQ(steps.missing, "");
+}
+
+TEST_F(RecordedSourceTest, TimesComeFromTheFilesWhereNobodyTellsThem) {
+  const auto sequence = [&](const std::string& pattern, double interval = 0) {
+    return open_sequence({{pattern}, interval, "automatic"}, folder_.string());
+  };
+  const auto write_times = [&](const std::string& name, const std::vector<double>& times) {
+    for (std::size_t k = 0; k < times.size(); ++k)
+      std::ofstream(folder_ / fmt::format("{}_{}.csv", name, k))
+          << fmt::format("time,id,x,y,z\n{},1,{},0,0\n", times[k], k);
+  };
+  // Rounded to single precision, as files hold them, with one file missing.
+  write_times("even", {3.0f, 3.04f, 3.08f, 3.16f});
+  const ParticleSequence even = sequence("even_*.csv");
+  EXPECT_TRUE(even.is_even);
+  EXPECT_EQ(even.interval, 1 / 25.0);
+  EXPECT_EQ(even.times, (std::vector<double>{0, 1 / 25.0, 2 / 25.0, 4 / 25.0}));
+  EXPECT_EQ(even.warnings.size(), 1U);
+  EXPECT_EQ(sequence("even_*.csv", 0.5).times.back(), 1.5);  // who tells it is right
+  write_times("uneven", {0, 0.1, 0.25, 0.33});
+  const ParticleSequence uneven = sequence("uneven_*.csv");
+  EXPECT_FALSE(uneven.is_even);
+  EXPECT_EQ(uneven.times, (std::vector<double>{0, 0.1, 0.25, 0.33}));
+  write_times("back", {0, 0.1, 0.05});
+  EXPECT_EQ(sequence("back_*.csv").interval, 1.0 / 30);
+  EXPECT_THAT(sequence("back_*.csv").notes, testing::Contains(HasSubstr("do not ascend")));
+  write("none_0.ply", {{1, {0, 0, 0}}}, with_ids);
+  write("none_1.ply", {{1, {0, 0, 0}}}, with_ids);
+  EXPECT_THAT(sequence("none_*.ply").notes, testing::Contains(HasSubstr("1/30 s")));
+  std::ofstream(folder_ / "run.pvd") << "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"0.5\" "
+                                        "file=\"even_1.csv\"/><DataSet timestep=\"0\" file=\"even_0.csv\"/>"
+                                        "</Collection></VTKFile>";
+  const ParticleSequence collection = sequence("run.pvd");
+  EXPECT_EQ(collection.times, (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(collection.files[0].filename(), "even_0.csv");
+}
+
+TEST_F(RecordedSourceTest, WithoutIdsTheirOrderCountsWhereItLasts) {
+  std::vector<TestParticle> particles, shuffled;
+  for (int i = 0; i < 125; ++i) particles.push_back({0, Vec3(i % 5, i / 5 % 5, i / 25) * 0.1});
+  for (int i = 0; i < 125; ++i) shuffled.push_back({0, particles[(i * 62) % 125].position + Vec3(0.01, 0, 0)});
+  write("same_0.ply", particles, positions_only);
+  write("same_1.ply", particles, positions_only);
+  write("mess_0.ply", particles, positions_only);
+  write("mess_1.ply", shuffled, positions_only);
+  write("more_0.ply", particles, with_velocities);
+  particles.push_back({0, {1, 1, 1}});
+  write("more_1.ply", particles, with_velocities);
+  const auto state_of = [&](const std::string& pattern, const std::string& ids = "automatic") {
+    const auto source = open(pattern, 0.5, ids);
+    source->advance_to(0.125);
+    return source->state();
+  };
+  EXPECT_TRUE(state_of("same_*.ply").has_lasting_ids);
+  EXPECT_FALSE(state_of("same_*.ply", "none").has_lasting_ids);
+  const ParticleState mess = state_of("mess_*.ply");
+  EXPECT_FALSE(mess.has_lasting_ids || mess.has_velocities || mess.has_material);
+  // Between the files both states are there, with weights.
+  const ParticleState more = state_of("more_*.ply");
+  EXPECT_TRUE(more.has_velocities && !more.has_lasting_ids);
+  ASSERT_EQ(more.weights.size(), 125U + 126U);
+  EXPECT_EQ(more.weights.front(), 0.75);
+  EXPECT_EQ(more.weights.back(), 0.25);
+  EXPECT_EQ(more.ids.back(), 250U);
+}
+
+TEST_F(RecordedSourceTest, ParticlesThatJumpHaveNoVelocityFromTheJump) {
+  for (int k = 0; k < 4; ++k) {
+    std::vector<TestParticle> particles;
+    for (int i = 0; i < 20; ++i) particles.push_back({static_cast<std::uint64_t>(i), Vec3(0.1 * i + 0.01 * k, 0, 0)});
+    if (k >= 2) particles[7].position += Vec3(50, 0, 0);
+    write(fmt::format("jump_{}.ply", k), particles, with_ids);
+  }
+  const auto source = open("jump_*.ply", 0.5);
+  for (const double time : {0.0, 0.5, 1.0, 1.5}) {
+    source->advance_to(time);
+    for (const Vec3& velocity : source->state().velocities) EXPECT_NEAR(velocity.x(), 0.02, 1e-12) << time;
+  }
+}
+
+TEST_F(RecordedSourceTest, SpacingIsEstimatedFromDistances) {
+  std::vector<Vec3> lattice;
+  for (int i = 0; i < 1000; ++i) lattice.emplace_back(0.02 * Vec3(i % 10, i / 10 % 10, i / 100));
+  EXPECT_NEAR(estimated_spacing(lattice), 0.02, 1e-12);
+  EXPECT_EQ(estimated_spacing({}), 0);
+  EXPECT_EQ(estimated_spacing({{1, 1, 1}}), 0);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST_F(FileInfoTest, Particles) {
 }
 
 TEST_F(FileInfoTest, SaysWhatCannotBeRead) {
-  EXPECT_NE(message_of<InputError>([&] { describe_file(path("a.stl")); }).find("expected an OBJ or PLY"),
+  EXPECT_NE(message_of<InputError>([&] { describe_file(path("a.stl")); }).find("expected an OBJ, PLY or particle"),
             std::string::npos);
   EXPECT_NE(message_of<InputError>([&] { describe_file(path("a.obj")); }).find("no such file"), std::string::npos);
   const std::string twice = write_text("t.ply",

@@ -338,8 +338,8 @@ TEST(Velocity, WhereTheFieldIsSilentTheResultIsDefined) {
     for (const bool moving : {true, false}) {
       std::vector<Vec3> velocities(moving ? particles.size() : 0, v);
       if (velocities.size() > 1) velocities.back() = -v;
-      for (const auto& [method, summary, create, uses_particle_velocities] : velocity_methods()) {
-        if (uses_particle_velocities && velocities.size() != particles.size()) {
+      for (const auto& [method, summary, create, needs_particle_velocities] : velocity_methods()) {
+        if (needs_particle_velocities && velocities.size() != particles.size()) {
           EXPECT_THROW(evaluate(method, particles, velocities, settings, points), std::invalid_argument);
           continue;
         }

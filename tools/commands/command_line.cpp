@@ -31,6 +31,7 @@ std::vector<std::string> method_names() {
 /// What the user chose, as a call that is made once the whole command line is known to be right.
 struct Choice {
   RunOptions run;
+  TrackOptions track;
   RenderOptions render;
   bool no_pictures = false, no_video = false;
   std::vector<std::filesystem::path> info_files;
@@ -52,6 +53,56 @@ CLI::App* add_run(CLI::App& app, Choice& choice) {
   run->add_flag("--no-video", choice.no_video, "Pictures but no videos");
   run->add_flag("--quiet", choice.run.quiet, "No progress; warnings and errors only");
   return run;
+}
+
+CLI::App* add_track(CLI::App& app, Choice& choice) {
+  TrackOptions& options = choice.track;
+  CLI::App* track = app.add_subcommand(
+      "track", "Track a textured surface on recorded particles of any program: CSV, PLY, VTK, VTP (docs/track.md)");
+  const auto length = CLI::Range(1e-9, 1e6);
+  track
+      ->add_option("particles", options.particles,
+                   "Files, a pattern in quotes such as 'run/p_*.vtp' or p_%04d.ply, a folder, or one .pvd; columns x, "
+                   "y, z and, where there are any, velocity, id, radius")
+      ->required();
+  track->add_option("--out", options.run.out, "Run directory (default: output/track_<name of the files>)");
+  track
+      ->add_option("--spacing", options.spacing,
+                   "Distance of neighbouring particles (m; default: from the radius in the files, else estimated)")
+      ->check(length);
+  track
+      ->add_option("--radius", options.radius,
+                   "Effective radius of a particle (m; default: 2.5 spacings); smaller shows more detail")
+      ->check(length);
+  track->add_option("--edge-length", options.edge_length, "Target edge of the mesh (m; default: 0.75 spacings)")
+      ->check(length);
+  auto* rate =
+      track->add_option("--frame-rate", options.frame_rate, "Files a second (default: the times in the files, else 30)")
+          ->check(CLI::Range(1e-5, 1e5));
+  track->add_option("--time-step", options.time_step, "The same as seconds between files")
+      ->check(CLI::Range(1e-5, 1e5))
+      ->excludes(rate);
+  track->add_option("--frames", options.run.frames, "Number of frames after the first (default: all)")
+      ->check(CLI::Range(1, 1000000));
+  track->add_option("--velocity", options.run.velocity, "Velocity method (default: curvature); see `flowskin methods`")
+      ->check(CLI::IsMember(method_names()));
+  track->add_flag("--no-ids", options.no_ids, "Do not match particles from file to file, neither by id nor by order");
+  track->add_option("--texture", options.texture, "checker, marble or an image file (default: checker)");
+  track->add_option("--mapping", options.mapping, "How the texture is put on: box, planar or spherical (default: box)")
+      ->check(CLI::IsMember({"box", "planar", "spherical"}));
+  track
+      ->add_option("--tile-size", options.tile_size,
+                   "Edge of one copy of the texture (m; default: by the fluid's size)")
+      ->check(length);
+  track->add_option("--up", options.up, "Axis that points up in the pictures")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
+  track->add_option("--threads", options.run.threads, "Threads (default: all); results do not depend on it")
+      ->check(CLI::Range(1, kMaxThreads));
+  track->add_flag("--no-pictures", choice.no_pictures, "Neither pictures nor videos");
+  track->add_flag("--no-video", choice.no_video, "Pictures but no videos");
+  track->add_flag("--quiet", options.run.quiet, "No progress; warnings and errors only");
+  return track;
 }
 
 CLI::App* add_render(CLI::App& app, Choice& choice) {
@@ -87,10 +138,12 @@ int run_choice(int argc, const char* const* argv) {
       "`flowskin COMMAND --help` lists a command's options.");
   Choice choice;
   for (int i = 0; i < argc; ++i) choice.run.command_line += (i ? " " : "") + std::string(argv[i]);
+  choice.track.run.command_line = choice.run.command_line;
   CLI::App* run = add_run(app, choice);
+  CLI::App* track = add_track(app, choice);
   CLI::App* render = add_render(app, choice);
   CLI::App* info = app.add_subcommand("info", "Say what is in a mesh, particle or scene file, and whether it is sound");
-  info->add_option("files", choice.info_files, "OBJ, PLY or scene files")->required();
+  info->add_option("files", choice.info_files, "OBJ, PLY, particle (CSV, VTK, VTP) or scene files")->required();
   CLI::App* methods = app.add_subcommand("methods", "List the velocity methods and when to use which");
   methods->add_flag("--table", choice.methods_table, "Their errors on flows that are known everywhere (Markdown)");
   CLI::App* scene = app.add_subcommand("scene", "Describe the scene file");
@@ -114,6 +167,11 @@ int run_choice(int argc, const char* const* argv) {
     choice.run.video = !choice.no_video;
     run_scene(choice.run);
     return kDone;
+  }
+  if (*track) {
+    choice.track.run.pictures = !choice.no_pictures;
+    choice.track.run.video = !choice.no_video;
+    return track_command(choice.track);
   }
   if (*render) {
     choice.render.video = !choice.no_video;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "scenes/scene.h"
 #include "tools/pipeline/run_options.h"
 
 namespace flowskin::tools {
@@ -23,6 +25,21 @@ struct RenderOptions {
   int threads = 0;
   bool video = true, quiet = false;
 };
+
+/// What `flowskin track` is told; lengths in metres. Unset values are estimated or have defaults.
+struct TrackOptions {
+  std::vector<std::filesystem::path> particles;  ///< files, patterns, a folder, or one .pvd
+  std::optional<double> spacing, radius, edge_length, tile_size;
+  std::optional<double> frame_rate, time_step;  ///< files a second, s between files
+  bool no_ids = false;
+  std::string texture, mapping;  ///< empty: the scene file's defaults
+  std::string up = "y";          ///< or z
+  RunOptions run;                ///< without scene_file
+};
+
+int track_command(const TrackOptions& options);
+/// The part of the scene that says which files are played, and how.
+scenes::RecordedSpec recorded_spec(const TrackOptions& options);
 
 int render_command(const RenderOptions& options);
 int info_command(const std::vector<std::filesystem::path>& files);

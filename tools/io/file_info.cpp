@@ -8,8 +8,10 @@
 #include <functional>
 
 #include "scenes/io/obj_reader.h"
+#include "scenes/io/particle_file.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/scene_file.h"
+#include "scenes/sources/particle_spacing.h"
 #include "tools/errors.h"
 #include "tools/frame_data.h"
 #include "tracking/mesh/mesh_check.h"
@@ -31,9 +33,9 @@ std::string bounds_line(const Positions& positions) {
                      high.y(), low.z(), high.z());
 }
 
-std::string property_line(const scenes::PlyFile& ply) {
+std::string property_line(const std::map<std::string, std::vector<double>>& columns) {
   std::string names;
-  for (const auto& [name, column] : ply.vertex) names += (names.empty() ? "" : " ") + name;
+  for (const auto& [name, column] : columns) names += (names.empty() ? "" : " ") + name;
   return "properties: " + names;
 }
 
@@ -81,16 +83,23 @@ std::string range_line(const char* what, const char* unit, const std::vector<T>&
                      sum / static_cast<double>(values.size()));
 }
 
-void describe_particles(FileInfo& info, const std::string& name, const scenes::PlyFile& ply) {
-  const scenes::ParticleState state = scenes::particles_from_ply(ply, name);
-  info.lines.push_back(fmt::format("particles: {}", state.positions.size()));
-  info.lines.push_back(property_line(ply));
+void describe_particles(FileInfo& info, const std::string& name, const scenes::ParticleTable& table) {
+  const scenes::ParticleFile file = scenes::particles_from_table(table, name);
+  const scenes::ParticleState& state = file.state;
+  info.lines.push_back(fmt::format("particles: {} ({})", state.positions.size(), table.format));
+  info.lines.push_back(property_line(table.columns));
+  if (table.time) info.lines.push_back(fmt::format("time: {:.6g} s", *table.time));
   if (state.positions.empty()) return;
   info.lines.push_back(bounds_line(state.positions));
-  info.lines.push_back(range_line("speed", "m/s", state.velocities, [](const Vec3& v) { return v.norm(); }));
+  if (const double spacing = scenes::estimated_spacing(state.positions); spacing > 0)
+    info.lines.push_back(fmt::format("spacing: about {:.4g} m (estimated from the distances of neighbours)", spacing));
+  if (file.has_velocities)
+    info.lines.push_back(range_line("speed", "m/s", state.velocities, [](const Vec3& v) { return v.norm(); }));
   if (std::any_of(state.densities.begin(), state.densities.end(), [](double d) { return d != 0; }))
     info.lines.push_back(range_line("density", "kg/m^3", state.densities, std::identity()));
-  info.lines.push_back(fmt::format("ids: {} to {}, each once", state.ids.front(), state.ids.back()));
+  info.lines.push_back(file.has_ids ? fmt::format("ids: {} to {}, each once", state.ids.front(), state.ids.back())
+                                    : "ids: none");
+  if (!file.has_velocities) info.lines.emplace_back("velocities: none");
   info.lines.emplace_back("sound: all values finite");
 }
 
@@ -105,13 +114,20 @@ FileInfo describe(const std::filesystem::path& file) {
   } else if (extension == ".ply") {
     const scenes::PlyFile ply = scenes::read_ply(file);
     if (ply.triangles.empty()) {
-      describe_particles(info, file.string(), ply);
+      describe_particles(info, file.string(), scenes::table_from_ply(ply));
     } else {
       describe_surface(info, vertex_positions(ply, file.string()), ply.triangles);
-      info.lines.insert(info.lines.begin() + 1, property_line(ply));
+      info.lines.insert(info.lines.begin() + 1, property_line(ply.vertex));
     }
+  } else if (scenes::is_particle_extension(extension)) {
+    const scenes::ParticleTable table = scenes::read_particle_table(file);
+    if (table.polygons > 0)
+      throw InputError(fmt::format("{}: a mesh with {} polygons; of meshes, OBJ and PLY files can be looked at",
+                                   file.string(), table.polygons));
+    describe_particles(info, file.string(), table);
   } else {
-    throw InputError(file.string() + ": expected an OBJ or PLY file (by the end of its name)");
+    throw InputError(file.string() +
+                     ": expected an OBJ, PLY or particle (CSV, VTK, VTP) file (by the end of its name)");
   }
   return info;
 }

@@ -84,7 +84,7 @@ FrameRow FrameStatistics::finish_frame(int frame, const scenes::ParticleSource& 
     row.area = report.area;
     row.max_distance = report.max_distance;
     describe_surface(surface->mesh, row);
-    if (row.vertices > 0 && row.particles > 0) {
+    if (row.vertices > 0 && row.particles > 0 && source.state().has_material) {
       const tracking::Particles particles = to_particles(source.state());
       const tracking::MetaballField field(particles.positions, {}, tracker->settings().field);
       row.texture_drift = quantile(tracking::material_drift(surface->mesh, field, particles), 0.5);

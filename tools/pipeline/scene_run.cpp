@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "scenes/scene_checks.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/make_source.h"
 #include "tools/errors.h"
@@ -28,13 +31,53 @@ namespace flowskin::tools {
 
 namespace {
 
-scenes::Scene scene_as_run(const RunOptions& options) {
-  scenes::Scene scene = scenes::read_scene(options.scene_file, scene_vocabulary());
+/// Of blended states, in effective radii: beyond it they show the fluid twice.
+constexpr double kLargestMismatch = 0.5;
+
+scenes::Scene scene_as_run(scenes::Scene scene, const RunOptions& options) {
   if (options.frames) scene.frames = *options.frames;
   if (options.velocity) scene.tracking.velocity = *options.velocity;
   scene.render.enabled = scene.render.enabled && options.pictures;
   scene.output.video = scene.output.video && options.video;
   return scene;
+}
+
+/// @throws InputError where the run would remove the particles that it is to read.
+void check_inputs_stay(const scenes::Scene& scene, const RunDirectory& directory) {
+  if (scene.particles.source != scenes::ParticlesSpec::Source::recorded) return;
+  namespace fs = std::filesystem;
+  for (const std::string& name : scene.particles.recorded.files) {
+    const fs::path file = scenes::absolute_name(scene.directory, name);
+    std::error_code error;
+    const fs::path folder = fs::weakly_canonical(fs::is_directory(file, error) ? file : file.parent_path(), error);
+    for (const fs::path& cleared :
+         {directory.particle_folder(), directory.surface_folder(), directory.image_folder()}) {
+      if (fs::weakly_canonical(cleared, error) == folder)
+        throw InputError(
+            fmt::format("{} holds the particles to be tracked, and a run into {} would remove them; give "
+                        "another folder to --out",
+                        folder.string(), directory.root().string()));
+    }
+  }
+}
+
+/// The particles as they are written and drawn: of two blended states those of the nearer one.
+scenes::ParticleState of_nearer_state(const scenes::ParticleState& state) {
+  if (state.weights.empty()) return state;
+  const std::size_t count = state.ids.size(), earlier = state.earlier_count;
+  const bool is_earlier = earlier > 0 && state.weights.front() >= 0.5;
+  const auto begin = static_cast<std::ptrdiff_t>(is_earlier ? 0 : earlier);
+  const auto end = static_cast<std::ptrdiff_t>(is_earlier ? earlier : count);
+  const auto part = [&](const auto& values) { return std::vector(values.begin() + begin, values.begin() + end); };
+  scenes::ParticleState nearer = state;
+  nearer.ids = part(state.ids);
+  nearer.positions = part(state.positions);
+  nearer.velocities = part(state.velocities);
+  nearer.rest_positions = part(state.rest_positions);
+  nearer.densities = part(state.densities);
+  nearer.weights.clear();
+  nearer.earlier_count = 0;
+  return nearer;
 }
 
 /// The state of one run; `frame` does the work of one frame, in the order of the data.
@@ -48,7 +91,8 @@ class SceneRun {
   void describe();
   void advance(int frame);
   void record(int frame);
-  void write_row(int frame, const SurfaceFrame* surface);
+  void warn_of_ghosts(double time);
+  void write_row(int frame, std::size_t particles, const SurfaceFrame* surface);
   void finish(double started);
 
   const RunOptions& options_;
@@ -64,6 +108,7 @@ class SceneRun {
   std::unique_ptr<PictureMaker> pictures_;
   FrameStatistics statistics_;
   std::vector<FrameRow> rows_;
+  bool warned_of_ghosts_ = false;
   std::map<std::string, double> booked_;  // seconds of each stage up to the last row
 };
 
@@ -75,6 +120,12 @@ SceneRun::SceneRun(const RunOptions& options, scenes::Scene scene, const RunDire
   source_ = clock_.time("source", [&] { return scenes::make_source(scene_); });
   const scenes::ParticleState& start = source_->state();
   scene_.tracking.velocity = velocity_method_for(scene_.tracking.velocity, start);
+  if (scene_.tracking.enabled && !start.has_velocities && tracking::needs_particle_velocities(scene_.tracking.velocity))
+    throw InputError(
+        fmt::format("the velocity method \"{}\" needs the particles' velocities, but the recorded particles "
+                    "have neither velocities nor ids to find them by; choose one that goes by the field alone, "
+                    "such as affine, or record velocities",
+                    scene_.tracking.velocity));
   if (scene_.texture.rest_size <= 0) {
     const RestFrame rest = rest_frame(start.rest_positions);
     scene_.texture.rest_center = rest.center;
@@ -114,11 +165,27 @@ void SceneRun::advance(int frame) {
     if (!tracker_) continue;
     clock_.time("tracking", [&] { tracker_->advance(to_particles(source_->state())); });
     statistics_.add(tracker_->report());
+    warn_of_ghosts(time);
   }
 }
 
+void SceneRun::warn_of_ghosts(double time) {
+  const tracking::TrackerReport& report = tracker_->report();
+  const double radius = tracker_->settings().field.radius;
+  if (warned_of_ghosts_ || !report.blended || report.mismatch <= kLargestMismatch * radius) return;
+  warned_of_ghosts_ = true;
+  const double times = std::ceil(report.mismatch / (kLargestMismatch * radius));
+  log_.warning(
+      fmt::format("at {:.4g} s particles are up to {:.3g} m from any of the state before, more than half the effective "
+                  "radius ({:.3g} "
+                  "m), and nobody knows which is which: the surface between the two states shows the fluid twice. "
+                  "Record at least {} "
+                  "times as many frames, write ids or velocities with the particles, or take a larger --radius",
+                  time, report.mismatch, radius, times));
+}
+
 void SceneRun::record(int frame) {
-  const scenes::ParticleState& state = source_->state();
+  const scenes::ParticleState state = of_nearer_state(source_->state());
   const double time = frame / scene_.frame_rate;
   const ParticleFrame particles = dress(state, source_->spacing(), rest_);
   std::unique_ptr<SurfaceFrame> surface;
@@ -138,12 +205,13 @@ void SceneRun::record(int frame) {
       if (surface) pictures_->draw(frame, *surface);
     });
   }
-  write_row(frame, surface.get());
+  write_row(frame, state.positions.size(), surface.get());
 }
 
-void SceneRun::write_row(int frame, const SurfaceFrame* surface) {
+void SceneRun::write_row(int frame, std::size_t particles, const SurfaceFrame* surface) {
   FrameRow row =
       clock_.time("statistics", [&] { return statistics_.finish_frame(frame, *source_, tracker_.get(), surface); });
+  row.particles = particles;  // of blended states those that are written
   const auto since_last_row = [&](const char* stage) {
     const double total = clock_.seconds(stage);
     return total - std::exchange(booked_[stage], total);
@@ -210,13 +278,18 @@ void SceneRun::finish(double started) {
 }  // namespace
 
 void run_scene(const RunOptions& options) {
+  RunOptions with_folder = options;
+  if (options.out.empty()) with_folder.out = std::filesystem::path("output") / options.scene_file.stem();
+  run_scene(scenes::read_scene(options.scene_file, scene_vocabulary()), with_folder);
+}
+
+void run_scene(scenes::Scene scene, const RunOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
-  scenes::Scene scene = scene_as_run(options);
-  const RunDirectory directory(options.out.empty() ? std::filesystem::path("output") / options.scene_file.stem()
-                                                   : options.out);
+  const RunDirectory directory(options.out);
+  check_inputs_stay(scene, directory);
   directory.prepare();
   catch_interruptions();
-  SceneRun(options, std::move(scene), directory).run();
+  SceneRun(options, scene_as_run(std::move(scene), options), directory).run();
 }
 
 }  // namespace flowskin::tools

@@ -3,12 +3,20 @@
 namespace flowskin::tools {
 
 tracking::Particles to_particles(const scenes::ParticleState& state) {
-  return {state.time, state.ids, state.positions, state.velocities, state.rest_positions};
+  tracking::Particles particles;
+  particles.time = state.time;
+  particles.ids = state.ids;
+  particles.positions = state.positions;
+  if (state.has_velocities) particles.velocities = state.velocities;
+  if (state.has_material) particles.rest_positions = state.rest_positions;
+  particles.weights = state.weights;
+  particles.has_lasting_ids = state.has_lasting_ids;
+  return particles;
 }
 
 std::string velocity_method_for(const std::string& name, const scenes::ParticleState& state) {
   if (name != kAutomaticVelocity) return name;
-  return state.velocities.empty() && !state.positions.empty() ? "affine" : "hybrid";
+  return state.has_velocities ? "hybrid" : "affine";
 }
 
 tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {

@@ -8,6 +8,7 @@
 
 namespace flowskin::tools {
 
+/// What the source does not know stays empty.
 tracking::Particles to_particles(const scenes::ParticleState& state);
 
 /// What a scene says for the best velocity method that its particles allow.

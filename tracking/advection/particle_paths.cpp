@@ -2,11 +2,86 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nanoflann.hpp>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace flowskin::tracking {
+namespace {
+
+// A particle that goes so many times as far as nine in ten do may have jumped.
+constexpr double jump_in_usual_paths = 8;
+constexpr std::size_t most_samples = 20000;
+constexpr double most_share = 0.998;
+
+// The value below which a share of the values lie; 0 where there are none.
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+// How far nine in ten particles of both states move at most.
+double usual_path(const Particles& from, const Particles& to) {
+  std::vector<double> paths;
+  for (std::size_t i = 0, j = 0; i < from.ids.size() && j < to.ids.size();) {
+    if (from.ids[i] == to.ids[j]) paths.push_back((to.positions[j] - from.positions[i]).norm());
+    const bool next_i = from.ids[i] <= to.ids[j], next_j = to.ids[j] <= from.ids[i];
+    i += next_i;
+    j += next_j;
+  }
+  return quantile(std::move(paths), 0.9);
+}
+
+// One part for each run of equal weights, in the order of the particles.
+std::vector<FieldPart> parts_of(const Particles& particles) {
+  std::vector<FieldPart> parts;
+  for (std::size_t i = 0; i < particles.positions.size(); ++i) {
+    const double weight = particles.weights.empty() ? 1 : particles.weights[i];
+    if (parts.empty() || parts.back().share != weight) parts.push_back({{}, {}, weight, 0});
+    parts.back().positions.push_back(particles.positions[i]);
+    if (!particles.velocities.empty()) parts.back().velocities.push_back(particles.velocities[i]);
+  }
+  return parts;
+}
+
+// Where the particles are a time later.
+std::vector<Vec3> moved(const Particles& particles, double duration) {
+  std::vector<Vec3> positions = particles.positions;
+  for (std::size_t i = 0; i < particles.velocities.size(); ++i) positions[i] += duration * particles.velocities[i];
+  return positions;
+}
+
+// Points for nanoflann.
+struct PointCloud {
+  const std::vector<Vec3>& points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  double kdtree_get_pt(std::size_t index, std::size_t axis) const { return points[index][static_cast<int>(axis)]; }
+  template <typename Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+// How far nearly all points, of which only some are looked at where there are many, are from the nearest target.
+double distance_of_most(const std::vector<Vec3>& points, const std::vector<Vec3>& targets) {
+  if (points.empty() || targets.empty()) return 0;
+  const PointCloud cloud{targets};
+  const nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>, PointCloud, 3, int> tree(
+      3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+  std::vector<double> distances;
+  const std::size_t stride = 1 + points.size() / most_samples;
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    int index = 0;
+    double squared = 0;
+    if (tree.knnSearch(points[i].data(), 1, &index, &squared) == 1) distances.push_back(std::sqrt(squared));
+  }
+  return quantile(std::move(distances), most_share);
+}
+
+}  // namespace
 
 void check_particles(const Particles& particles) {
   const std::size_t count = particles.ids.size();
@@ -14,28 +89,58 @@ void check_particles(const Particles& particles) {
     throw std::invalid_argument("particles at time " + std::to_string(particles.time) + " s: " + what);
   };
   if (!std::isfinite(particles.time)) fail("the time must be finite");
-  if (particles.positions.size() != count || particles.velocities.size() != count ||
-      particles.rest_positions.size() != count) {
+  const auto fits = [count](std::size_t size) { return size == count || size == 0; };
+  if (particles.positions.size() != count || !fits(particles.velocities.size()) ||
+      !fits(particles.rest_positions.size()) || !fits(particles.weights.size())) {
     fail("ids, positions, velocities and rest positions must have one entry a particle, but have " +
          std::to_string(count) + ", " + std::to_string(particles.positions.size()) + ", " +
-         std::to_string(particles.velocities.size()) + ", " + std::to_string(particles.rest_positions.size()));
+         std::to_string(particles.velocities.size()) + ", " + std::to_string(particles.rest_positions.size()) +
+         "; weights " + std::to_string(particles.weights.size()));
   }
+  const auto finite = [](const std::vector<Vec3>& vectors, std::size_t i) {
+    return vectors.empty() || vectors[i].allFinite();
+  };
   for (std::size_t i = 0; i < count; ++i) {
     if (i > 0 && particles.ids[i] <= particles.ids[i - 1]) {
       fail("ids must ascend, but particle " + std::to_string(i) + " has id " + std::to_string(particles.ids[i]) +
            " after " + std::to_string(particles.ids[i - 1]) + "; sort the particles by id");
     }
-    if (!particles.positions[i].allFinite() || !particles.velocities[i].allFinite() ||
-        !particles.rest_positions[i].allFinite()) {
+    if (!particles.weights.empty() && !(std::isfinite(particles.weights[i]) && particles.weights[i] >= 0)) {
+      fail("the particle with id " + std::to_string(particles.ids[i]) + " has a weight that is negative or not finite");
+    }
+    if (!finite(particles.positions, i) || !finite(particles.velocities, i) || !finite(particles.rest_positions, i)) {
       fail("the particle with id " + std::to_string(particles.ids[i]) + " has a value that is not finite");
     }
   }
 }
 
-ParticlePaths::ParticlePaths(const Particles& from, const Particles& to) : begin_(from.time), end_(to.time) {
+MetaballField field_of(const Particles& particles, const FieldSettings& settings) {
+  if (particles.weights.empty()) return MetaballField(particles.positions, particles.velocities, settings);
+  return MetaballField(parts_of(particles), settings);
+}
+
+ParticlePaths::ParticlePaths(const Particles& from, const Particles& to, double longest_jump)
+    : begin_(from.time), end_(to.time) {
+  const auto unknown = [](const Particles& state) {
+    return !state.has_lasting_ids || !state.weights.empty() || (state.velocities.empty() && !state.ids.empty());
+  };
+  blended_ = unknown(from) || unknown(to);
+  if (!blended_) {
+    match(from, to, longest_jump);
+    return;
+  }
+  early_ = parts_of(from);
+  late_ = parts_of(to);
+  mismatch_ = distance_of_most(moved(from, end_ - begin_), to.positions);
+}
+
+void ParticlePaths::match(const Particles& from, const Particles& to, double longest_jump) {
   const double duration = end_ - begin_;
   const std::size_t old_count = from.ids.size(), new_count = to.ids.size();
   paths_.reserve(std::max(old_count, new_count));
+  const double jump = longest_jump < std::numeric_limits<double>::infinity()
+                          ? std::max(longest_jump, jump_in_usual_paths * usual_path(from, to))
+                          : longest_jump;
   std::size_t i = 0, j = 0;
   while (i < old_count || j < new_count) {
     if (j == new_count || (i < old_count && from.ids[i] < to.ids[j])) {
@@ -44,6 +149,10 @@ ParticlePaths::ParticlePaths(const Particles& from, const Particles& to) : begin
     } else if (i == old_count || to.ids[j] < from.ids[i]) {
       const Vec3 &x = to.positions[j], &v = to.velocities[j++];
       paths_.push_back({x - duration * v, v, x, v, false});
+    } else if ((to.positions[j] - from.positions[i]).norm() > jump) {
+      const Vec3 &x0 = from.positions[i++], &x1 = to.positions[j++], none = Vec3::Zero();
+      paths_.push_back({x0, none, x0, none, true});
+      paths_.push_back({x1, none, x1, none, false});
     } else {
       paths_.push_back({from.positions[i], from.velocities[i], to.positions[j], to.velocities[j], false});
       ++i, ++j;
@@ -75,14 +184,36 @@ void ParticlePaths::at(double time, std::vector<Vec3>& positions, std::vector<Ve
 }
 
 MetaballField ParticlePaths::field(double time, const FieldSettings& settings) const {
-  std::vector<Vec3> positions, velocities;
-  at(time, positions, velocities);
-  return MetaballField(std::move(positions), std::move(velocities), settings);
+  if (!blended_) {
+    std::vector<Vec3> positions, velocities;
+    at(time, positions, velocities);
+    return MetaballField(std::move(positions), std::move(velocities), settings);
+  }
+  const double duration = end_ - begin_;
+  const double s = time == end_ ? 1 : (time - begin_) / duration;
+  const double rate = duration != 0 ? 1 / duration : 0;
+  std::vector<FieldPart> parts;
+  const auto add = [&parts](const std::vector<FieldPart>& of_state, double elapsed, double share, double share_rate) {
+    for (FieldPart part : of_state) {
+      for (std::size_t i = 0; i < part.velocities.size(); ++i) part.positions[i] += elapsed * part.velocities[i];
+      part.share_rate = part.share * share_rate;
+      part.share *= share;
+      parts.push_back(std::move(part));
+    }
+  };
+  add(late_, time == end_ ? 0 : time - end_, s, rate);
+  add(early_, time - begin_, 1 - s, -rate);
+  return MetaballField(std::move(parts), settings);
 }
 
 double ParticlePaths::longest_path() const {
   const double duration = std::abs(end_ - begin_);
-  double longest = 0;
+  double longest = mismatch_;
+  for (const std::vector<FieldPart>* state : {&early_, &late_}) {
+    for (const FieldPart& part : *state) {
+      for (const Vec3& v : part.velocities) longest = std::max(longest, mismatch_ + duration * v.norm());
+    }
+  }
   for (const Path& path : paths_) {
     // Control points of the Bezier form of the Hermite curve: their polygon is at least as long as the curve.
     const Vec3 m0 = (end_ - begin_) / 3 * path.v0, m1 = (end_ - begin_) / 3 * path.v1;

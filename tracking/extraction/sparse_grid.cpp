@@ -112,7 +112,9 @@ Vec3 SparseGrid::position(const Index& node) const {
   return spacing_ * Vec3(node[0] + kShift, node[1] + kShift, node[2] + kShift);
 }
 
-SparseGrid SparseGrid::of_particles(const std::vector<Vec3>& positions, const FieldSettings& settings, double spacing) {
+SparseGrid SparseGrid::of_particles(const std::vector<Vec3>& positions, const FieldSettings& settings, double spacing,
+                                    const std::vector<double>& shares) {
+  const auto share = [&shares](std::size_t p) { return shares.empty() ? 1.0 : shares[p]; };
   if (!(spacing > 0 && settings.radius > 0 && settings.threshold > 0)) {
     throw std::invalid_argument("surface extraction: grid spacing (" + std::to_string(spacing) + " m), field radius (" +
                                 std::to_string(settings.radius) + " m) and threshold (" +
@@ -122,6 +124,7 @@ SparseGrid SparseGrid::of_particles(const std::vector<Vec3>& positions, const Fi
   std::vector<NodeBox> boxes(positions.size());
   std::vector<std::uint64_t> keys;
   for (std::size_t p = 0; p < positions.size(); ++p) {
+    if (!(share(p) > 0)) continue;
     boxes[p] = support_box(positions[p], settings.radius, spacing);
     for_each_block(boxes[p], 1, [&](const Index& place) {
       if (keys.empty() || keys.back() != key_of(place)) keys.push_back(key_of(place));
@@ -137,6 +140,7 @@ SparseGrid SparseGrid::of_particles(const std::vector<Vec3>& positions, const Fi
   // Particles of each block, ascending, so that sums do not depend on the number of threads.
   std::vector<std::vector<int>> members(grid.blocks_.size());
   for (std::size_t p = 0; p < positions.size(); ++p) {
+    if (!(share(p) > 0)) continue;
     for_each_block(boxes[p], 0, [&](const Index& place) { members[grid.find(place)].push_back(static_cast<int>(p)); });
   }
 #pragma omp parallel for schedule(dynamic, 4)
@@ -144,7 +148,7 @@ SparseGrid SparseGrid::of_particles(const std::vector<Vec3>& positions, const Fi
     Block& block = grid.blocks_[b];
     const Vec3 first = grid.position({kSide * block.place[0], kSide * block.place[1], kSide * block.place[2]});
     for (int p : members[b]) {
-      add_kernel((positions[p] - first) / spacing, settings.radius / spacing, settings.weight, block);
+      add_kernel((positions[p] - first) / spacing, settings.radius / spacing, share(p) * settings.weight, block);
     }
   }
   return grid;

@@ -23,9 +23,11 @@ class SparseGrid {
 
   /// The metaball field [FMM13, Eq. 13]: every particle adds its kernel to the nodes in its support. There is at least
   /// one layer of nodes with the outside value, -T, around the supports.
+  /// @param shares factors of the particles' weights; empty: 1 each
   /// @throws std::invalid_argument where the particles spread over more than two million blocks along an axis, or where
   /// spacing, radius or threshold are not positive.
-  static SparseGrid of_particles(const std::vector<Vec3>& positions, const FieldSettings& settings, double spacing);
+  static SparseGrid of_particles(const std::vector<Vec3>& positions, const FieldSettings& settings, double spacing,
+                                 const std::vector<double>& shares = {});
 
   /// A box of size[0] x size[1] x size[2] given values, z runs fastest, surrounded by the outside value.
   static SparseGrid of_values(const Index& size, const std::vector<double>& values, double outside, double spacing);

@@ -62,20 +62,52 @@ FieldSettings default_field_settings(double spacing, double radius_in_spacings) 
 }
 
 struct MetaballField::Impl {
-  Impl(std::vector<Vec3> particle_positions, std::vector<Vec3> particle_velocities, const FieldSettings& field_settings)
-      : settings((check(particle_positions, particle_velocities, field_settings), field_settings)),
-        positions(std::move(particle_positions)),
-        velocities(std::move(particle_velocities)),
-        blocks(positions, velocities, settings.radius) {}
+  /// The neighbour lookup of one part.
+  struct Part {
+    ParticleBlocks blocks;
+    double share, share_rate;
+    bool moving;
+    int first;  ///< Number of its first particle.
+  };
 
-  /// Calls visit(group, ex, ey, ez, u, inside) for every four particles of which some may be nearer than sigma.
+  Impl(std::vector<FieldPart> given, const FieldSettings& field_settings) : settings(field_settings) {
+    const bool some_move =
+        std::any_of(given.begin(), given.end(), [](const FieldPart& p) { return !p.velocities.empty(); });
+    const bool one_whole = given.size() == 1 && given.front().share == 1;
+    for (FieldPart& part : given) {
+      check(part.positions, part.velocities, settings);
+      if (!(std::isfinite(part.share) && part.share >= 0 && std::isfinite(part.share_rate)))
+        throw std::invalid_argument("MetaballField: the share of a part is " + std::to_string(part.share) +
+                                    ", its rate " + std::to_string(part.share_rate) +
+                                    "; expected a number that is not negative and a finite one");
+      const std::size_t count = part.positions.size();
+      parts.push_back({ParticleBlocks(part.positions, part.velocities, settings.radius), part.share, part.share_rate,
+                       !part.velocities.empty(), static_cast<int>(positions.size())});
+      if (some_move && part.velocities.empty()) part.velocities.assign(count, Vec3::Zero());
+      if (!one_whole) shares.insert(shares.end(), count, part.share);
+      take(std::move(part.positions), positions);
+      take(std::move(part.velocities), velocities);
+    }
+    if (given.empty()) check({}, {}, settings);
+  }
+
+  static void take(std::vector<Vec3>&& from, std::vector<Vec3>& to) {
+    if (to.empty()) {
+      to = std::move(from);
+    } else {
+      to.insert(to.end(), from.begin(), from.end());
+    }
+  }
+
+  /// Calls visit(group, ex, ey, ez, u, inside) for every four particles of a part of which some may be nearer than
+  /// sigma.
   template <class Visit>
-  void for_each_group(const Vec3& x, const Visit& visit) const {
+  void for_each_group(const Part& part, const Vec3& x, const Visit& visit) const {
     std::vector<int>& near = group_scratch();
-    const int count = blocks.near(x, settings.radius, near);
+    const int count = part.blocks.near(x, settings.radius, near);
     const double per_radius = 1 / settings.radius;
     for (int i = 0; i < count; ++i) {
-      const ParticleGroup& group = blocks.group(near[i]);
+      const ParticleGroup& group = part.blocks.group(near[i]);
       const Lanes ex = (x.x() - group.x) * per_radius;
       const Lanes ey = (x.y() - group.y) * per_radius;
       const Lanes ez = (x.z() - group.z) * per_radius;
@@ -85,125 +117,206 @@ struct MetaballField::Impl {
     }
   }
 
+  double kernel_sum(const Part& part, const Vec3& x) const;
+  double kernel_sum(const Part& part, const Vec3& x, Vec3& gradient_sum) const;
+  Jet part_jet(const Part& part, const Vec3& x, const FieldSettings& with) const;
+  void add_moments(const Part& part, const Vec3& x, KernelMoments& moments) const;
+
   FieldSettings settings;
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;
-  ParticleBlocks blocks;
+  std::vector<double> shares;
+  std::vector<Part> parts;
 };
 
+namespace {
+
+std::vector<FieldPart> single_part(std::vector<Vec3> positions, std::vector<Vec3> velocities) {
+  std::vector<FieldPart> parts(1);
+  parts.front().positions = std::move(positions);
+  parts.front().velocities = std::move(velocities);
+  return parts;
+}
+
+/// Adds a part's jet with its share; its value is without the threshold.
+void add_share(const Jet& jet, double share, double share_rate, Jet& sum) {
+  sum.value += share * jet.value;
+  sum.gradient += share * jet.gradient;
+  sum.hessian += share * jet.hessian;
+  for (int axis = 0; axis < 3; ++axis) sum.third[axis] += share * jet.third[axis];
+  sum.value_rate += share * jet.value_rate + share_rate * jet.value;
+  sum.gradient_rate += share * jet.gradient_rate + share_rate * jet.gradient;
+  sum.hessian_rate += share * jet.hessian_rate + share_rate * jet.hessian;
+  sum.neighbors += jet.neighbors;
+}
+
+}  // namespace
+
 MetaballField::MetaballField(std::vector<Vec3> positions, std::vector<Vec3> velocities, FieldSettings settings)
-    : impl_(std::make_unique<Impl>(std::move(positions), std::move(velocities), settings)) {}
+    : MetaballField(single_part(std::move(positions), std::move(velocities)), settings) {}
+MetaballField::MetaballField(std::vector<FieldPart> parts, FieldSettings settings)
+    : impl_(std::make_unique<Impl>(std::move(parts), settings)) {}
 MetaballField::~MetaballField() = default;
 MetaballField::MetaballField(MetaballField&&) noexcept = default;
 MetaballField& MetaballField::operator=(MetaballField&&) noexcept = default;
 
-double MetaballField::value(const Vec3& x) const {
+double MetaballField::Impl::kernel_sum(const Part& part, const Vec3& x) const {
   const Lanes zero{};
   Lanes sum{};
-  impl_->for_each_group(x, [&](const ParticleGroup&, const Lanes&, const Lanes&, const Lanes&, const Lanes& u,
-                               const LaneMask& inside) { sum += inside ? u * u * u : zero; });
-  return impl_->settings.weight * lane_sum(sum) - impl_->settings.threshold;
+  for_each_group(part, x,
+                 [&](const ParticleGroup&, const Lanes&, const Lanes&, const Lanes&, const Lanes& u,
+                     const LaneMask& inside) { sum += inside ? u * u * u : zero; });
+  return lane_sum(sum);
 }
 
-double MetaballField::value(const Vec3& x, Vec3& gradient) const {
+double MetaballField::Impl::kernel_sum(const Part& part, const Vec3& x, Vec3& gradient_sum) const {
   const Lanes zero{};
   Lanes sum{}, gx{}, gy{}, gz{};
-  impl_->for_each_group(x, [&](const ParticleGroup&, const Lanes& ex, const Lanes& ey, const Lanes& ez, const Lanes& u,
-                               const LaneMask& inside) {
-    const Lanes u2 = inside ? u * u : zero;
-    sum += inside ? u2 * u : zero;
-    gx += inside ? u2 * ex : zero;
-    gy += inside ? u2 * ey : zero;
-    gz += inside ? u2 * ez : zero;
-  });
-  const FieldSettings& settings = impl_->settings;
-  gradient = -6 * settings.weight / settings.radius * Vec3(lane_sum(gx), lane_sum(gy), lane_sum(gz));
-  return settings.weight * lane_sum(sum) - settings.threshold;
+  for_each_group(part, x,
+                 [&](const ParticleGroup&, const Lanes& ex, const Lanes& ey, const Lanes& ez, const Lanes& u,
+                     const LaneMask& inside) {
+                   const Lanes u2 = inside ? u * u : zero;
+                   sum += inside ? u2 * u : zero;
+                   gx += inside ? u2 * ex : zero;
+                   gy += inside ? u2 * ey : zero;
+                   gz += inside ? u2 * ez : zero;
+                 });
+  gradient_sum = Vec3(lane_sum(gx), lane_sum(gy), lane_sum(gz));
+  return lane_sum(sum);
 }
 
-Jet MetaballField::jet(const Vec3& x) const {
+Jet MetaballField::Impl::part_jet(const Part& part, const Vec3& x, const FieldSettings& with) const {
   constexpr int capacity = 32;
   std::array<NeighborLanes, capacity> lanes;
   int count = 0;
   const Lanes zero{};
   LaneMask neighbors{};
   MetaballSums sums;
-  const bool moving = !impl_->velocities.empty();
-  impl_->for_each_group(x, [&](const ParticleGroup& group, const Lanes& ex, const Lanes& ey, const Lanes& ez,
-                               const Lanes& u, const LaneMask& inside) {
-    if (count == capacity) {
-      sums.add(lanes.data(), count, moving);
-      count = 0;
-    }
-    NeighborLanes& next = lanes[count];
-    next.ex = inside ? ex : zero;
-    next.ey = inside ? ey : zero;
-    next.ez = inside ? ez : zero;
-    next.u = inside ? u : zero;
-    next.vx = group.vx;
-    next.vy = group.vy;
-    next.vz = group.vz;
-    neighbors -= inside;                          // a lane of a mask is 0 or -1
-    count += static_cast<int>(any_lane(inside));  // without a branch, which could not be foretold
-  });
-  sums.add(lanes.data(), count, moving);
-  Jet jet = sums.jet(impl_->settings);
+  for_each_group(part, x,
+                 [&](const ParticleGroup& group, const Lanes& ex, const Lanes& ey, const Lanes& ez, const Lanes& u,
+                     const LaneMask& inside) {
+                   if (count == capacity) {
+                     sums.add(lanes.data(), count, part.moving);
+                     count = 0;
+                   }
+                   NeighborLanes& next = lanes[count];
+                   next.ex = inside ? ex : zero;
+                   next.ey = inside ? ey : zero;
+                   next.ez = inside ? ez : zero;
+                   next.u = inside ? u : zero;
+                   next.vx = group.vx;
+                   next.vy = group.vy;
+                   next.vz = group.vz;
+                   neighbors -= inside;                          // a lane of a mask is 0 or -1
+                   count += static_cast<int>(any_lane(inside));  // without a branch, which could not be foretold
+                 });
+  sums.add(lanes.data(), count, part.moving);
+  Jet jet = sums.jet(with);
   jet.neighbors = static_cast<int>(neighbors[0] + neighbors[1] + neighbors[2] + neighbors[3]);
   return jet;
 }
 
-KernelMoments MetaballField::moments(const Vec3& x) const {
+void MetaballField::Impl::add_moments(const Part& part, const Vec3& x, KernelMoments& moments) const {
   const Lanes zero{};
   std::array<Lanes, 3> gradient{};
   std::array<Lanes, 6> u2_ee{}, u_ee{};
   std::array<Lanes, 10> u_eee{};
   std::array<Lanes, 15> eeee{};
-  impl_->for_each_group(x, [&](const ParticleGroup&, const Lanes& ex, const Lanes& ey, const Lanes& ez, const Lanes& u,
-                               const LaneMask& inside) {
-    if (!any_lane(inside)) return;
-    const std::array<Lanes, 3> e = {inside ? ex : zero, inside ? ey : zero, inside ? ez : zero};
-    const Lanes u_in = inside ? u : zero;
-    // In lexicographic order of ascending indices.
-    std::size_t second = 0, third = 0, fourth = 0;
-    for (int a = 0; a < 3; ++a) {
-      gradient[a] += u_in * u_in * e[a];
-      for (int b = a; b < 3; ++b) {
-        const Lanes ee = e[a] * e[b];
-        const Lanes uee = u_in * ee;
-        u_ee[second] += uee;
-        u2_ee[second++] += u_in * uee;
-        for (int c = b; c < 3; ++c) {
-          u_eee[third++] += uee * e[c];
-          for (int d = c; d < 3; ++d) eeee[fourth++] += ee * e[c] * e[d];
-        }
-      }
-    }
-  });
-  KernelMoments moments;
-  const auto sum = [](const auto& lanes, auto& sums) {
-    for (std::size_t i = 0; i < lanes.size(); ++i) sums[i] = lane_sum(lanes[i]);
+  for_each_group(part, x,
+                 [&](const ParticleGroup&, const Lanes& ex, const Lanes& ey, const Lanes& ez, const Lanes& u,
+                     const LaneMask& inside) {
+                   if (!any_lane(inside)) return;
+                   const std::array<Lanes, 3> e = {inside ? ex : zero, inside ? ey : zero, inside ? ez : zero};
+                   const Lanes u_in = inside ? u : zero;
+                   // In lexicographic order of ascending indices.
+                   std::size_t second = 0, third = 0, fourth = 0;
+                   for (int a = 0; a < 3; ++a) {
+                     gradient[a] += u_in * u_in * e[a];
+                     for (int b = a; b < 3; ++b) {
+                       const Lanes ee = e[a] * e[b];
+                       const Lanes uee = u_in * ee;
+                       u_ee[second] += uee;
+                       u2_ee[second++] += u_in * uee;
+                       for (int c = b; c < 3; ++c) {
+                         u_eee[third++] += uee * e[c];
+                         for (int d = c; d < 3; ++d) eeee[fourth++] += ee * e[c] * e[d];
+                       }
+                     }
+                   }
+                 });
+  const auto sum = [&part](const auto& lanes, auto& sums) {
+    for (std::size_t i = 0; i < lanes.size(); ++i) sums[i] += part.share * lane_sum(lanes[i]);
   };
   sum(u2_ee, moments.u2_ee);
   sum(u_ee, moments.u_ee);
   sum(u_eee, moments.u_eee);
   sum(eeee, moments.eeee);
-  for (int a = 0; a < 3; ++a) moments.gradient[a] = -6 * lane_sum(gradient[a]);
+  for (int a = 0; a < 3; ++a) moments.gradient[a] -= 6 * part.share * lane_sum(gradient[a]);
+}
+
+double MetaballField::value(const Vec3& x) const {
+  double sum = 0;
+  for (const Impl::Part& part : impl_->parts) {
+    if (part.share > 0) sum += part.share * impl_->kernel_sum(part, x);
+  }
+  return impl_->settings.weight * sum - impl_->settings.threshold;
+}
+
+double MetaballField::value(const Vec3& x, Vec3& gradient) const {
+  const FieldSettings& settings = impl_->settings;
+  double sum = 0;
+  Vec3 gradient_sum = Vec3::Zero();
+  for (const Impl::Part& part : impl_->parts) {
+    if (!(part.share > 0)) continue;
+    Vec3 part_gradient;
+    sum += part.share * impl_->kernel_sum(part, x, part_gradient);
+    gradient_sum += part.share * part_gradient;
+  }
+  gradient = -6 * settings.weight / settings.radius * gradient_sum;
+  return settings.weight * sum - settings.threshold;
+}
+
+Jet MetaballField::jet(const Vec3& x) const {
+  const FieldSettings& settings = impl_->settings;
+  if (impl_->shares.empty() && impl_->parts.size() == 1 && impl_->parts.front().share_rate == 0)
+    return impl_->part_jet(impl_->parts.front(), x, settings);
+  FieldSettings without_threshold = settings;
+  without_threshold.threshold = 0;
+  Jet jet;
+  for (const Impl::Part& part : impl_->parts) {
+    if (part.share > 0 || part.share_rate != 0)
+      add_share(impl_->part_jet(part, x, without_threshold), part.share, part.share_rate, jet);
+  }
+  jet.value -= settings.threshold;
+  return jet;
+}
+
+KernelMoments MetaballField::moments(const Vec3& x) const {
+  KernelMoments moments;
+  for (const Impl::Part& part : impl_->parts) {
+    if (part.share > 0) impl_->add_moments(part, x, moments);
+  }
   return moments;
 }
 
 const FieldSettings& MetaballField::settings() const { return impl_->settings; }
 const std::vector<Vec3>& MetaballField::positions() const { return impl_->positions; }
 const std::vector<Vec3>& MetaballField::velocities() const { return impl_->velocities; }
+const std::vector<double>& MetaballField::shares() const { return impl_->shares; }
 
 void MetaballField::neighbors(const Vec3& x, double radius, std::vector<int>& found) const {
   found.clear();
   if (!(radius > 0)) return;
   std::vector<int>& near = group_scratch();
-  const int count = impl_->blocks.near(x, radius, near);
-  for (int i = 0; i < count; ++i) {
-    for (int lane = 0; lane < lane_count; ++lane) {
-      const int particle = impl_->blocks.particle(near[i], lane);
-      if (particle >= 0 && (impl_->positions[particle] - x).squaredNorm() < radius * radius) found.push_back(particle);
+  for (const Impl::Part& part : impl_->parts) {
+    const int count = part.blocks.near(x, radius, near);
+    for (int i = 0; i < count; ++i) {
+      for (int lane = 0; lane < lane_count; ++lane) {
+        const int in_part = part.blocks.particle(near[i], lane);
+        if (in_part < 0) continue;
+        const int particle = part.first + in_part;
+        if ((impl_->positions[particle] - x).squaredNorm() < radius * radius) found.push_back(particle);
+      }
     }
   }
   std::sort(found.begin(), found.end());

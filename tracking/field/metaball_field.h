@@ -21,12 +21,24 @@ struct FieldSettings {
 /// lattice half a spacing outside the outermost layer, where the fluid ends: so the volume comes out right.
 FieldSettings default_field_settings(double spacing, double radius_in_spacings = 2.5);
 
+/// Particles that make a share of a field, and how that share changes.
+struct FieldPart {
+  std::vector<Vec3> positions;   ///< m
+  std::vector<Vec3> velocities;  ///< m/s; may be empty: then they are taken to stand still
+  double share = 1;              ///< Factor of the weights of all of these particles, 0 or more.
+  double share_rate = 0;         ///< Its time derivative (1/s).
+};
+
 /// f(x) = sum_i w (1 - |x - x_i|^2 / sigma^2)^3 - T over the particles nearer than sigma; f > 0 inside.
-/// A snapshot at one time; safe to use from many threads.
+/// A field of several parts is the sum of theirs, f = sum_k s_k F_k - T, with the time derivatives f_t = sum_k (s_k
+/// dF_k/dt
+/// + ds_k/dt F_k) and alike for those of gradient and Hessian: with shares 1 - s and s it goes from one field to
+/// another. A snapshot at one time; safe to use from many threads.
 class MetaballField {
  public:
   /// `velocities` may be empty: then the time derivatives of the jet are zero.
   MetaballField(std::vector<Vec3> positions, std::vector<Vec3> velocities, FieldSettings settings);
+  explicit MetaballField(std::vector<FieldPart> parts, FieldSettings settings);
   ~MetaballField();
   MetaballField(MetaballField&&) noexcept;
   MetaballField& operator=(MetaballField&&) noexcept;
@@ -40,8 +52,12 @@ class MetaballField {
   KernelMoments moments(const Vec3& x) const;
 
   const FieldSettings& settings() const;
+  /// Of all parts after one another.
   const std::vector<Vec3>& positions() const;
+  /// Empty where those of no part are known.
   const std::vector<Vec3>& velocities() const;
+  /// Share of each particle; empty: 1 each.
+  const std::vector<double>& shares() const;
   /// Indices of the particles nearer than `radius` (m), ascending. Clears `found` first.
   void neighbors(const Vec3& x, double radius, std::vector<int>& found) const;
 

@@ -85,6 +85,7 @@ ParticleBlocks::ParticleBlocks(const std::vector<Vec3>& positions, const std::ve
 }
 
 ParticleBlocks::~ParticleBlocks() = default;
+ParticleBlocks::ParticleBlocks(ParticleBlocks&&) noexcept = default;
 
 void ParticleBlocks::add_block(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities,
                                const int* begin, const int* end) {

@@ -29,6 +29,7 @@ class ParticleBlocks {
   /// `reach` is the radius of most queries (m); it decides how large blocks may be. `velocities` may be empty.
   ParticleBlocks(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, double reach);
   ~ParticleBlocks();
+  ParticleBlocks(ParticleBlocks&&) noexcept;
 
   const ParticleGroup& group(int index) const { return groups_[index]; }
   /// Index of the particle in a lane of a group, -1 where there is none.

@@ -43,13 +43,14 @@ std::vector<int> nearest(const std::vector<Vec3>& targets, const std::vector<Vec
 }
 
 // Neighbours of x, the nearest first is `nearest`; the support grows until it holds a particle.
-int find_neighbors(const MetaballField& field, const Vec3& x, double& radius, std::vector<int>& found) {
+// Only the first `count` particles of the field count.
+int find_neighbors(const MetaballField& field, int count, const Vec3& x, double& radius, std::vector<int>& found) {
   radius = field.settings().radius;
-  field.neighbors(x, radius, found);
-  while (found.empty()) {
-    radius *= 2;
+  const auto find = [&] {
     field.neighbors(x, radius, found);
-  }
+    std::erase_if(found, [count](int p) { return p >= count; });  // of a state that the field is leaving behind
+  };
+  for (find(); found.empty(); find()) radius *= 2;
   int nearest_particle = found.front();
   for (int p : found) {
     if ((field.positions()[p] - x).squaredNorm() < (field.positions()[nearest_particle] - x).squaredNorm()) {
@@ -64,7 +65,7 @@ int find_neighbors(const MetaballField& field, const Vec3& x, double& radius, st
 Vec3 rest_position_at(const MetaballField& field, const Particles& particles, const Vec3& x) {
   std::vector<int> found;
   double radius = 0;
-  const int closest = find_neighbors(field, x, radius, found);
+  const int closest = find_neighbors(field, static_cast<int>(particles.positions.size()), x, radius, found);
   using Vec4 = Eigen::Vector4d;
   Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, 3> sums = Eigen::Matrix<double, 4, 3>::Zero();
@@ -105,18 +106,26 @@ SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& g
   mesh.next_id = old_mesh.next_id;
 
   const ClosestPointTree tree(old_mesh.positions, old_mesh.triangles);
+  const auto interpolated = [&old_mesh](const MeshPoint& point, const std::vector<Vec3>& values) {
+    Vec3 sum = Vec3::Zero();
+    for (int corner = 0; corner < 3; ++corner) {
+      sum += point.weights[corner] * values[old_mesh.triangles[point.triangle][corner]];
+    }
+    return sum;
+  };
 #pragma omp parallel for schedule(dynamic, 256)
   for (int v = 0; v < count; ++v) {
-    const MeshPoint point = tree.closest(mesh.positions[v], settings.reach, normals[v], kSameSide);
-    if (point.triangle < 0) {
-      mesh.rest_positions[v] = rest_position_at(field, particles, mesh.positions[v]);
-      continue;
+    const Vec3& x = mesh.positions[v];
+    const MeshPoint point = tree.closest(x, settings.reach, normals[v], kSameSide);
+    if (point.triangle >= 0) {
+      mesh.rest_positions[v] = interpolated(point, old_mesh.rest_positions);
+    } else if (!particles.rest_positions.empty()) {
+      mesh.rest_positions[v] = rest_position_at(field, particles, x);
+    } else {
+      const MeshPoint far = tree.closest(x, settings.far_reach);
+      mesh.rest_positions[v] =
+          far.triangle < 0 ? x : x + interpolated(far, old_mesh.rest_positions) - interpolated(far, old_mesh.positions);
     }
-    Vec3 rest = Vec3::Zero();
-    for (int corner = 0; corner < 3; ++corner) {
-      rest += point.weights[corner] * old_mesh.rest_positions[old_mesh.triangles[point.triangle][corner]];
-    }
-    mesh.rest_positions[v] = rest;
   }
 
   const std::vector<int> old_of_new = nearest(old_mesh.positions, mesh.positions, settings.same_vertex);

@@ -28,6 +28,13 @@ const std::vector<VelocityMethodInfo>& velocity_methods() {
   return methods;
 }
 
+bool needs_particle_velocities(const std::string& name) {
+  const auto& methods = velocity_methods();
+  return std::any_of(methods.begin(), methods.end(), [&name](const VelocityMethodInfo& method) {
+    return method.name == name && method.needs_particle_velocities;
+  });
+}
+
 std::unique_ptr<VelocityMethod> make_velocity_method(const std::string& name) {
   std::string valid;
   for (const VelocityMethodInfo& method : velocity_methods()) {

@@ -25,11 +25,14 @@ struct VelocityMethodInfo {
   std::string name;
   std::string summary;  ///< One sentence: what it assumes and when to use it.
   std::unique_ptr<VelocityMethod> (*create)();
-  bool uses_particle_velocities = false;  ///< Beyond what the field's time derivatives tell.
+  bool needs_particle_velocities = false;  ///< The field alone is not enough (MetaballField::velocities is empty).
 };
 
 /// All methods, in the order of presentation.
 const std::vector<VelocityMethodInfo>& velocity_methods();
+
+/// True where the method of this name needs particle velocities.
+bool needs_particle_velocities(const std::string& name);
 
 /// @throws std::invalid_argument naming the valid methods, where there is none of this name.
 std::unique_ptr<VelocityMethod> make_velocity_method(const std::string& name);

@@ -1,0 +1,17 @@
+// Types of numbers in binary files.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace flowskin::scenes {
+
+enum class NumberType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+std::size_t size_of(NumberType type);
+
+/// Appends the numbers that `bytes` holds, all of which are used; a surplus of less than a number is left out.
+void append_numbers(std::string_view bytes, NumberType type, bool big_endian, std::vector<double>& numbers);
+
+}  // namespace flowskin::scenes

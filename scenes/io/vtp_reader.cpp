@@ -1,0 +1,281 @@
+#include "scenes/io/vtp_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+
+#include "scenes/io/number_type.h"
+#include "scenes/io/parse_number.h"
+#include "scenes/io/vtk_data.h"
+#include "scenes/io/xml_scanner.h"
+#include "scenes/scene_file.h"
+
+namespace flowskin::scenes {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, NumberType>, 10> type_names{{{"Int8", NumberType::int8},
+                                                                              {"UInt8", NumberType::uint8},
+                                                                              {"Int16", NumberType::int16},
+                                                                              {"UInt16", NumberType::uint16},
+                                                                              {"Int32", NumberType::int32},
+                                                                              {"UInt32", NumberType::uint32},
+                                                                              {"Int64", NumberType::int64},
+                                                                              {"UInt64", NumberType::uint64},
+                                                                              {"Float32", NumberType::float32},
+                                                                              {"Float64", NumberType::float64}}};
+constexpr std::uint64_t most_components = 1024;
+/// No file of this size exists; larger counts would overflow the arithmetic below.
+constexpr std::uint64_t most_points = std::uint64_t{1} << 40;
+
+/// An array as its tag describes it.
+struct Array {
+  std::string name;
+  NumberType type = NumberType::float32;
+  std::uint64_t components = 1;
+  std::string format;
+  std::optional<std::uint64_t> offset;  ///< into the appended data
+  std::size_t start = 0;                ///< of its tag
+  std::string_view text;                ///< between its tags
+};
+
+class VtpParser {
+ public:
+  VtpParser(std::string_view bytes, const std::string& name)
+      : bytes_(bytes), name_(name), head_(split_off_appended_data()), scanner_(head_, name) {}
+
+  ParticleTable parse() {
+    XmlTag tag;
+    while (scanner_.next(tag)) {
+      if (tag.opens) open(tag);
+      if (tag.closes && !open_.empty() && open_.back() == tag.name) open_.pop_back();
+    }
+    if (!has_root_) scanner_.fail(0, "expected <VTKFile ...>; this is no VTK XML file");
+    if (!has_piece_) scanner_.fail(head_.size(), "there is no <Piece> with points: the file is truncated or empty");
+    if (!open_.empty())
+      scanner_.fail(head_.size(), fmt::format("<{}> is never closed: the file is truncated", open_.back()));
+    check_columns();
+    table_.format = fmt::format("VTK XML ({}{}{})", encoding_.compressed ? "zlib, " : "",
+                                encoding_.big_endian ? "big endian, " : "", formats_.empty() ? "no data" : formats_);
+    return std::move(table_);
+  }
+
+ private:
+  /// The data after <AppendedData> may hold any byte: it is cut off before the tags are read.
+  std::string_view split_off_appended_data() {
+    const std::size_t tag = bytes_.find("<AppendedData");
+    if (tag == std::string_view::npos) return bytes_;
+    const std::size_t end = bytes_.find('>', tag);
+    if (end == std::string_view::npos) return bytes_;
+    appended_base64_ = bytes_.substr(tag, end - tag).find("raw") == std::string_view::npos;
+    const std::size_t underscore = bytes_.find('_', end);
+    if (underscore != std::string_view::npos) appended_ = bytes_.substr(underscore + 1);
+    has_appended_ = true;
+    return bytes_.substr(0, tag);
+  }
+
+  void open(const XmlTag& tag) {
+    if (!tag.closes) open_.push_back(tag.name);
+    if (tag.name == "VTKFile") {
+      read_root(tag);
+      if (has_appended_) open_.pop_back();  // its end was cut off with the data
+    } else if (!has_root_) {
+      scanner_.fail(tag.start, "expected <VTKFile ...>; this is no VTK XML file");
+    } else if (tag.name == "Piece") {
+      start_piece(tag);
+    } else if (tag.name == "DataArray") {
+      read_array(tag);
+    }
+  }
+
+  bool inside(std::string_view name) const { return std::find(open_.begin(), open_.end(), name) != open_.end(); }
+
+  void read_root(const XmlTag& tag) {
+    const auto value = [&tag](std::string_view name) { return tag.find(name) ? *tag.find(name) : std::string(); };
+    const std::string type = value("type"), order = value("byte_order"), header = value("header_type");
+    if (type.starts_with("P") && type != "PolyData")
+      scanner_.fail(tag.start, type +
+                                   ": this only names the files of a parallel run; merge them in ParaView (File > "
+                                   "Save Data) or name the pieces' files");
+    if (type == "Collection")
+      scanner_.fail(tag.start, "this is a collection of files; give it alone, with the end .pvd");
+    if (type != "PolyData" && type != "UnstructuredGrid")
+      scanner_.fail(tag.start,
+                    fmt::format("type \"{}\": particles are expected as PolyData or UnstructuredGrid", type));
+    if (order != "LittleEndian" && order != "BigEndian" && !order.empty())
+      scanner_.fail(tag.start, "byte_order: expected LittleEndian or BigEndian");
+    if (header != "UInt32" && header != "UInt64" && !header.empty())
+      scanner_.fail(tag.start, "header_type: expected UInt32 or UInt64");
+    const std::string compressor = value("compressor");
+    if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
+      scanner_.fail(tag.start, compressor +
+                                   " is not supported; write the file with zlib or without compression "
+                                   "(ParaView: Compressor Type in the dialogue of Save Data)");
+    encoding_ = {order == "BigEndian", header == "UInt64", !compressor.empty()};
+    has_root_ = true;
+  }
+
+  std::uint64_t count_of(const XmlTag& tag, std::string_view attribute, std::uint64_t fallback,
+                         std::uint64_t most) const {
+    const std::string* text = tag.find(attribute);
+    if (text == nullptr) return fallback;
+    std::uint64_t count = 0;
+    std::string_view digits = *text;
+    skip_space(digits);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
+    if (error != std::errc() || count > most)
+      scanner_.fail(tag.start,
+                    fmt::format("{}=\"{}\": expected a whole number up to {}", attribute, text->substr(0, 40), most));
+    return count;
+  }
+
+  void start_piece(const XmlTag& tag) {
+    piece_points_ = count_of(tag, "NumberOfPoints", 0, most_points);
+    table_.count += static_cast<std::size_t>(piece_points_);
+    table_.polygons += static_cast<std::size_t>(count_of(tag, "NumberOfPolys", 0, most_points) +
+                                                count_of(tag, "NumberOfStrips", 0, most_points));
+    has_piece_ = true;
+  }
+
+  Array described(const XmlTag& tag) const {
+    Array array;
+    array.start = tag.start;
+    if (const std::string* name = tag.find("Name")) array.name = *name;
+    const std::string* type = tag.find("type");
+    const auto* found = std::find_if(type_names.begin(), type_names.end(),
+                                     [&](const auto& t) { return type != nullptr && t.first == *type; });
+    if (found == type_names.end())
+      scanner_.fail(tag.start, fmt::format("the array \"{}\" has the type \"{}\"; expected Float32, Int64 or the like",
+                                           array.name, type ? type->substr(0, 40) : ""));
+    array.type = found->second;
+    array.components = count_of(tag, "NumberOfComponents", 1, most_components);
+    const std::string* format = tag.find("format");
+    array.format = format ? *format : "ascii";
+    if (tag.find("offset")) array.offset = count_of(tag, "offset", 0, std::uint64_t{1} << 62);
+    if (!tag.closes) {
+      const std::size_t end = std::min(head_.find('<', tag.end), head_.size());
+      array.text = head_.substr(tag.end, end - tag.end);
+    }
+    return array;
+  }
+
+  void read_array(const XmlTag& tag) {
+    const std::string* type = tag.find("type");
+    if (type && *type == "String") return;
+    const std::string* name = tag.find("Name");
+    if (inside("FieldData") && name && (*name == "TimeValue" || *name == "TIME" || *name == "Time")) {
+      const std::vector<double> time = numbers_of(described(tag), 1);
+      if (!time.empty()) table_.time = time.front();
+    } else if (inside("Points")) {
+      Array points = described(tag);
+      if (points.components != 3) scanner_.fail(tag.start, "points need 3 components");
+      add_columns(points, {"x", "y", "z"});
+    } else if (inside("PointData")) {
+      const Array array = described(tag);
+      std::vector<std::string> columns;
+      for (std::uint64_t k = 0; k < array.components; ++k)
+        columns.push_back(array.components == 1 ? array.name : array.name + "_" + std::to_string(k));
+      add_columns(array, columns);
+    }
+  }
+
+  void add_columns(const Array& array, const std::vector<std::string>& columns) {
+    const std::vector<double> numbers = numbers_of(array, piece_points_ * array.components);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      std::vector<double>& values = table_.columns[columns[k]];
+      // The first array of a name counts: an attribute called x is no position.
+      if (values.size() + piece_points_ > table_.count) continue;
+      for (std::size_t i = k; i < numbers.size(); i += columns.size()) values.push_back(numbers[i]);
+    }
+  }
+
+  /// The array's numbers. @throws SceneError where there are not `count`.
+  std::vector<double> numbers_of(const Array& array, std::uint64_t count) {
+    if (formats_.find(array.format) == std::string::npos) formats_ += (formats_.empty() ? "" : ", ") + array.format;
+    const auto fail = [&](const std::string& message) {
+      scanner_.fail(array.start, fmt::format("the array \"{}\": {}", array.name, message));
+    };
+    std::vector<double> numbers;
+    if (count == 0) return numbers;
+    if (array.format == "ascii") {
+      std::string_view rest = array.text;
+      for (std::uint64_t i = 0; i < count; ++i) {
+        double value = 0;
+        skip_space(rest);
+        if (!take_number(rest, value))
+          fail(fmt::format("expected number {} of {}, found \"{}\"", i + 1, count, take_word(rest).substr(0, 40)));
+        numbers.push_back(value);
+      }
+      return numbers;
+    }
+    std::string_view data = array.text;
+    bool base64 = true;
+    if (array.format == "appended") {
+      if (!has_appended_ || !array.offset || *array.offset > appended_.size())
+        fail("its data is not in the file: the file is truncated, or its offset is wrong");
+      data = appended_.substr(static_cast<std::size_t>(*array.offset));
+      base64 = appended_base64_;
+    } else if (array.format != "binary") {
+      fail(fmt::format("format \"{}\": expected ascii, binary or appended", array.format.substr(0, 40)));
+    }
+    try {
+      append_numbers(vtk_array_bytes(data, base64, encoding_, static_cast<std::size_t>(count * size_of(array.type))),
+                     array.type, encoding_.big_endian, numbers);
+    } catch (const VtkDataError& error) {
+      fail(error.what());
+    }
+    return numbers;
+  }
+
+  /// An array that only some pieces have is of no use.
+  void check_columns() {
+    for (const char* axis : {"x", "y", "z"})
+      if (table_.columns[axis].size() != table_.count)
+        scanner_.fail(head_.size(), "a <Piece> without <Points>: the file is truncated or damaged");
+    std::erase_if(table_.columns, [this](const auto& column) { return column.second.size() != table_.count; });
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  std::string_view appended_;
+  bool has_appended_ = false, appended_base64_ = false;
+  std::string_view head_;
+  XmlScanner scanner_;
+  std::vector<std::string> open_;  // tags around the present place
+  bool has_root_ = false, has_piece_ = false;
+  VtkEncoding encoding_;
+  std::uint64_t piece_points_ = 0;
+  std::string formats_;
+  ParticleTable table_;
+};
+
+}  // namespace
+
+ParticleTable parse_vtp(std::string_view bytes, const std::string& name) { return VtpParser(bytes, name).parse(); }
+
+std::vector<std::pair<double, std::filesystem::path>> parse_pvd(std::string_view bytes,
+                                                                const std::filesystem::path& file) {
+  const std::string name = file.string();
+  XmlScanner scanner(bytes, name);
+  std::vector<std::pair<double, std::filesystem::path>> entries;
+  bool is_collection = false;
+  for (XmlTag tag; scanner.next(tag);) {
+    if (tag.name == "Collection") is_collection = true;
+    if (tag.name != "DataSet" || !tag.opens) continue;
+    const std::string *time = tag.find("timestep"), *entry = tag.find("file");
+    double value = 0;
+    std::string_view rest = time ? std::string_view(*time) : std::string_view();
+    if (entry == nullptr || !take_number(rest, value))
+      scanner.fail(tag.start, "expected <DataSet timestep=\"TIME\" file=\"NAME\"/>");
+    const std::filesystem::path path(*entry);
+    entries.emplace_back(value, path.is_absolute() ? path : file.parent_path() / path);
+  }
+  if (!is_collection) scanner.fail(0, "expected <Collection>; this is no ParaView collection");
+  if (entries.empty()) scanner.fail(bytes.size(), "the collection names no files");
+  return entries;
+}
+
+}  // namespace flowskin::scenes

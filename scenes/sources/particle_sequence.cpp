@@ -1,0 +1,227 @@
+#include "scenes/sources/particle_sequence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "scenes/io/particle_file.h"
+#include "scenes/io/read_bytes.h"
+#include "scenes/io/vtp_reader.h"
+#include "scenes/scene_checks.h"
+#include "scenes/scene_file.h"
+#include "scenes/sources/file_pattern.h"
+#include "scenes/sources/particle_spacing.h"
+
+namespace flowskin::scenes {
+namespace {
+
+constexpr double default_interval = 1.0 / 30;  // s
+/// Times this near to whole multiples of the interval (in intervals) are taken for them: files hold them rounded.
+constexpr double even_tolerance = 1e-3;
+/// Frame rates this near to a whole number (relative) are taken for it.
+constexpr double whole_rate_tolerance = 1e-3;
+/// By order, most particles of two files would have to move this many spacings: then the order is not theirs.
+constexpr double far_in_spacings = 2;
+
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension;
+}
+
+/// What a look at each file tells.
+struct Census {
+  std::vector<double> times;  // empty where some file tells none
+  bool same_count = true;
+};
+
+class SequenceOpener {
+ public:
+  SequenceOpener(const RecordedSpec& spec, const std::string& directory) : spec_(spec), directory_(directory) {}
+
+  ParticleSequence open() {
+    if (!take_collection()) take_files();
+    const ParticleTable table = read_particle_table(sequence_.files.front());
+    sequence_.first = read_particles(sequence_.files.front());
+    const bool wants_times = file_times_.empty() && spec_.frame_interval == 0 && table.time.has_value();
+    const bool wants_ids = spec_.ids == "automatic" && !sequence_.first.has_ids;
+    const Census census = wants_times || wants_ids ? look_at_all() : Census{};
+    settle_times(wants_times ? census.times : std::vector<double>{}, table.time.has_value());
+    settle_ids(census);
+    return std::move(sequence_);
+  }
+
+ private:
+  /// A single .pvd names the files and their times.
+  bool take_collection() {
+    const std::filesystem::path file = spec_.files.empty() ? "" : absolute_name(directory_, spec_.files.front());
+    if (spec_.files.size() != 1 || lower_extension(file) != ".pvd") return false;
+    auto entries = parse_pvd(read_bytes(file), file);
+    std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [time, path] : entries) {
+      if (!file_times_.empty() && time == file_times_.back())
+        throw SceneError(
+            fmt::format("{}: {} and {} have the same time {} s; one file a time is expected (merge the "
+                        "parts in ParaView)",
+                        file.string(), sequence_.files.back().string(), path.string(), time));
+      file_times_.push_back(time);
+      sequence_.files.push_back(path);
+    }
+    return true;
+  }
+
+  void take_files() {
+    std::vector<std::string> names;
+    for (const std::string& name : spec_.files) names.push_back(absolute_name(directory_, name));
+    NumberedFiles files = files_of_patterns(names);
+    sequence_.files = std::move(files.paths);
+    steps_ = std::move(files.steps);
+    if (!files.missing.empty())
+      sequence_.warnings.push_back(files.missing + ": the time goes on across the gaps, particles are interpolated");
+  }
+
+  Census look_at_all() const {
+    Census census;
+    bool all_have_times = true;
+    for (const auto& file : sequence_.files) {
+      const ParticleTable table = read_particle_table(file);
+      census.same_count = census.same_count && table.count == sequence_.first.state.positions.size();
+      all_have_times = all_have_times && table.time && std::isfinite(*table.time);
+      if (all_have_times) census.times.push_back(*table.time);
+    }
+    if (!all_have_times) census.times.clear();
+    return census;
+  }
+
+  void settle_times(const std::vector<double>& times_in_files, bool first_has_time) {
+    const bool ascending = std::adjacent_find(times_in_files.begin(), times_in_files.end(), std::greater_equal<>()) ==
+                           times_in_files.end();
+    if (spec_.frame_interval > 0 && (file_times_.empty() || sequence_.files.size() == 1)) {
+      by_steps(spec_.frame_interval);
+    } else if (spec_.frame_interval > 0) {
+      steps_.clear();
+      for (std::size_t k = 0; k < file_times_.size(); ++k) steps_.push_back(k);
+      by_steps(spec_.frame_interval);
+    } else if (!file_times_.empty()) {
+      by_times(file_times_);
+    } else if (sequence_.files.size() > 1 && times_in_files.size() == sequence_.files.size() && ascending) {
+      by_times(times_in_files);
+    } else {
+      by_steps(default_interval);
+      if (sequence_.files.size() > 1)
+        sequence_.notes.push_back(
+            fmt::format("{}: 1/30 s between files is assumed; --frame-rate or --time-step says it",
+                        first_has_time ? "the times in the files do not ascend" : "the files tell no times"));
+    }
+  }
+
+  void by_steps(double interval) {
+    if (steps_.empty()) steps_.assign(1, 0);
+    sequence_.interval = interval;
+    for (const std::uint64_t step : steps_) sequence_.times.push_back(static_cast<double>(step) * interval);
+  }
+
+  void by_times(const std::vector<double>& times) {
+    std::vector<double> intervals;
+    for (std::size_t k = 1; k < times.size(); ++k) intervals.push_back(times[k] - times[k - 1]);
+    double interval = intervals.empty() ? default_interval : quantile(intervals, 0.5);
+    const double rate = 1 / interval;
+    if (std::round(rate) >= 1 && std::abs(rate - std::round(rate)) < whole_rate_tolerance * rate)
+      interval = 1 / std::round(rate);
+    sequence_.interval = interval;
+    std::vector<std::uint64_t> steps;
+    for (const double time : times) {
+      const double step = (time - times.front()) / interval;
+      const double whole = std::round(step);
+      // The tolerance grows with the steps: the interval itself is rounded.
+      sequence_.is_even = sequence_.is_even && std::abs(step - whole) < even_tolerance * std::max(1.0, whole);
+      steps.push_back(static_cast<std::uint64_t>(std::max(0.0, whole)));
+    }
+    sequence_.is_even = sequence_.is_even && std::adjacent_find(steps.begin(), steps.end()) == steps.end();
+    if (sequence_.is_even) {
+      steps_ = steps;
+      by_steps(interval);
+      if (steps.back() + 1 > steps.size())
+        sequence_.warnings.push_back(
+            fmt::format("{} of {} files are missing by their times: particles are interpolated across the gaps",
+                        steps.back() + 1 - steps.size(), steps.back() + 1));
+    } else {
+      for (const double time : times) sequence_.times.push_back(time - times.front());
+      sequence_.notes.push_back(fmt::format(
+          "the files are not evenly spaced in time: {:.4g} s is the usual step, frames are interpolated", interval));
+    }
+  }
+
+  void settle_ids(const Census& census) {
+    using Ids = ParticleSequence::Ids;
+    if (spec_.ids == "none") {
+      sequence_.ids = Ids::none;
+    } else if (spec_.ids == "order") {
+      sequence_.ids = Ids::order;
+    } else if (!sequence_.first.has_ids) {
+      sequence_.ids = Ids::none;
+      if (!census.same_count) {
+        sequence_.notes.emplace_back(
+            "the particles have no ids and their number changes: nobody knows which is which from file to file");
+      } else if (!order_is_lasting()) {
+        sequence_.warnings.emplace_back(
+            "the particles have no ids, and their order changes from file to file: nobody knows which is which");
+      } else {
+        sequence_.ids = Ids::order;
+        sequence_.notes.emplace_back(
+            "the particles have no ids but the same number in every file: their order is taken for ids (--no-ids "
+            "refuses)");
+      }
+    }
+  }
+
+  /// False where, by their order, most particles would jump from the first file to the second although the particles as
+  /// a whole hardly move: some programs sort them anew.
+  bool order_is_lasting() const {
+    if (sequence_.files.size() < 2) return true;
+    const std::vector<Vec3>& before = sequence_.first.state.positions;
+    const std::vector<Vec3> after = read_particles(sequence_.files[1]).state.positions;
+    std::vector<double> moved;
+    for (std::size_t i = 0; i < before.size(); ++i) moved.push_back((after[i] - before[i]).norm());
+    const double by_order = quantile(moved, 0.5), nearest = quantile(nearest_distances(before, after), 0.5);
+    return by_order <= far_in_spacings * estimated_spacing(before) || by_order <= 4 * nearest;
+  }
+
+  const RecordedSpec& spec_;
+  const std::string& directory_;
+  std::vector<double> file_times_;    // of a collection
+  std::vector<std::uint64_t> steps_;  // by the numbers
+  ParticleSequence sequence_;
+};
+
+}  // namespace
+
+ParticleSequence open_sequence(const RecordedSpec& spec, const std::string& directory) {
+  return SequenceOpener(spec, directory).open();
+}
+
+ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k) {
+  ParticleFile file = read_particles(sequence.files[k]);
+  const auto require = [&](bool has, bool first_has, const char* what) {
+    if (first_has && !has)
+      throw SceneError(
+          fmt::format("{}: the particles have no {}, but those of {} do; all files of a sequence need the "
+                      "same columns",
+                      sequence.files[k].string(), what, sequence.files.front().string()));
+  };
+  require(file.has_ids, sequence.first.has_ids && sequence.ids == ParticleSequence::Ids::of_files, "ids");
+  require(file.has_velocities, sequence.first.has_velocities, "velocities");
+  require(file.has_rest_positions, sequence.first.has_rest_positions, "rest positions");
+  const std::size_t count = file.state.positions.size(), first_count = sequence.first.state.positions.size();
+  if (sequence.ids == ParticleSequence::Ids::order && count != first_count)
+    throw SceneError(
+        fmt::format("{}: {} particles where the first file has {}, and they have no ids (column \"id\") to "
+                    "find them again by; --no-ids goes without",
+                    sequence.files[k].string(), count, first_count));
+  return file;
+}
+
+}  // namespace flowskin::scenes

@@ -1,0 +1,34 @@
+// What is known about a recorded sequence before it is played: its files, their times, and who is who.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenes/io/particle_columns.h"
+#include "scenes/scene.h"
+
+namespace flowskin::scenes {
+
+struct ParticleSequence {
+  enum class Ids { of_files, order, none };
+
+  std::vector<std::filesystem::path> files;
+  std::vector<double> times;  ///< s, ascending, the first is 0
+  double interval = 0;        ///< Usual time between files (s).
+  bool is_even = true;        ///< All times are whole multiples of the interval.
+  Ids ids = Ids::of_files;
+  ParticleFile first;              ///< The first file.
+  std::vector<std::string> notes;  ///< What was taken for granted, one sentence each.
+  std::vector<std::string> warnings;
+};
+
+/// Looks at the files of `spec`. All of them are read once where their times or numbers of particles are needed.
+/// @param directory where relative names start
+/// @throws SceneError naming the file and what is wrong with it or with the sequence.
+ParticleSequence open_sequence(const RecordedSpec& spec, const std::string& directory);
+
+/// File k. @throws SceneError also where it lacks ids or velocities that the first file has.
+ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k);
+
+}  // namespace flowskin::scenes

@@ -1,0 +1,170 @@
+// flowskin track PARTICLES...: a tracked surface on anyone's particles, by way of a scene made from the options.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/scene_file.h"
+#include "scenes/sources/particle_sequence.h"
+#include "scenes/sources/particle_spacing.h"
+#include "tools/commands/commands.h"
+#include "tools/errors.h"
+#include "tools/pipeline/picture_maker.h"
+#include "tools/pipeline/scene_run.h"
+#include "tools/pipeline/tracker_bridge.h"
+#include "tools/render/camera.h"
+
+namespace flowskin::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+using scenes::ParticleSequence;
+using scenes::Vec3;
+
+/// A radius in the files is believed where the spacing by it is within this factor of the distances found.
+constexpr double kLargestDisagreement = 2;
+
+void say(const TrackOptions& options, const std::string& line) {
+  if (!options.run.quiet) fmt::print(stderr, "{}\n", line);
+}
+
+void warn(const std::string& line) { fmt::print(stderr, "warning: {}\n", line); }
+
+/// Spacing as given, from the radius in the files, or from the distances in the first file that says something.
+double spacing_of(const TrackOptions& options, const ParticleSequence& sequence) {
+  if (options.spacing) return *options.spacing;
+  std::vector<Vec3> positions = sequence.first.state.positions;
+  for (std::size_t k = 1; k < sequence.files.size() && positions.size() < 2; ++k)
+    positions = scenes::read_sequence_file(sequence, k).state.positions;
+  const double estimate = scenes::estimated_spacing(positions);
+  const double by_radius = 2 * sequence.first.radius;
+  const bool agree =
+      estimate > 0 && by_radius < kLargestDisagreement * estimate && estimate < kLargestDisagreement * by_radius;
+  if (by_radius > 0 && (agree || !(estimate > 0))) {
+    say(options, fmt::format("spacing: {:.4g} m, twice the radius in the files", by_radius));
+    return by_radius;
+  }
+  if (!(estimate > 0))
+    throw InputError(
+        "the spacing of the particles cannot be estimated: fewer than two are apart in all files; give "
+        "--spacing");
+  if (by_radius > 0)
+    warn(fmt::format("the files say radius {:.4g} m, but neighbours are {:.4g} m apart: --spacing settles it",
+                     by_radius / 2, estimate));
+  say(options,
+      fmt::format("spacing: {:.4g} m, estimated from the distances of neighbours (--spacing settles it)", estimate));
+  return estimate;
+}
+
+/// "track_" and what the files are called, without their number; the folder's name where that says nothing.
+std::string default_name(const fs::path& first) {
+  const auto without_number = [](std::string name) {
+    const std::size_t end = name.find_last_not_of("0123456789_-. ");
+    return end == std::string::npos ? std::string() : name.substr(0, end + 1);
+  };
+  std::string name = without_number(first.stem().string());
+  fs::path folder = fs::absolute(first).parent_path();
+  for (; (name.empty() || name == "frame" || name == "particles") && folder.has_relative_path();
+       folder = folder.parent_path())
+    name = folder.filename().string();
+  return "track_" + (name.empty() ? "particles" : name);
+}
+
+void set_times(const TrackOptions& options, ParticleSequence& sequence, scenes::Scene& scene) {
+  scene.frame_rate = 1 / sequence.interval;
+  const double all = std::floor(sequence.times.back() / sequence.interval + 1e-6);
+  if (all > 1e6)
+    throw InputError(
+        fmt::format("the files span {:.4g} s at {:.4g} s a frame: more than a million frames; is "
+                    "--time-step right?",
+                    sequence.times.back(), sequence.interval));
+  scene.frames = static_cast<int>(all);
+  if (scene.frames == 0)
+    throw InputError(fmt::format("{} is the only file: to track a surface, at least two are needed",
+                                 sequence.files.front().string()));
+  if (options.run.frames) scene.frames = std::min(scene.frames, *options.run.frames);
+}
+
+/// Particles at the beginning, in the middle and at the end: what pictures are to show.
+std::vector<Vec3> places_seen(const ParticleSequence& sequence) {
+  std::vector<Vec3> places;
+  const std::size_t last = sequence.files.size() - 1;
+  for (const std::size_t k : {std::size_t{0}, last / 2, last}) {
+    const std::vector<Vec3> positions = scenes::read_sequence_file(sequence, k).state.positions;
+    places.insert(places.end(), positions.begin(), positions.end());
+  }
+  return places;
+}
+
+void set_pictures(const TrackOptions& options, const ParticleSequence& sequence, scenes::Scene& scene) {
+  const std::vector<Vec3> places = places_seen(sequence);
+  if (options.up == "z") {
+    scene.render.camera.up = {0, 0, 1};
+    scene.texture.axis = {0, 0, 1};
+    scene.render.light_direction = {-0.4, -0.5, 1.0};
+    scene.render.ground = false;
+  } else {
+    scene.render.ground_height = bounds(places).min.y() - scene.particles.spacing / 2;
+  }
+  const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
+  if (!places.empty()) scene.render.camera = place_camera(scene.render.camera, aspect, places);
+}
+
+scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) {
+  scenes::Scene scene;
+  scene.directory = fs::current_path().string();
+  scene.name = default_name(sequence.files.front());
+  scene.description = "A surface tracked on recorded particles by `flowskin track`.";
+  scene.particles.source = scenes::ParticlesSpec::Source::recorded;
+  scene.particles.recorded = recorded_spec(options);
+  // What was found out need not be found out again when the scene is run.
+  if (sequence.ids == ParticleSequence::Ids::order) scene.particles.recorded.ids = "order";
+  if (sequence.ids == ParticleSequence::Ids::none) scene.particles.recorded.ids = "none";
+  scene.particles.spacing = spacing_of(options, sequence);
+  set_times(options, sequence, scene);
+  scene.tracking.steps_per_frame = 1;
+  if (options.radius) scene.tracking.radius = *options.radius / scene.particles.spacing;
+  if (options.edge_length) scene.tracking.edge_length = *options.edge_length / scene.particles.spacing;
+  if (!options.texture.empty()) scene.texture.image = options.texture;
+  if (!options.mapping.empty()) scene.texture.mapping = options.mapping;
+  if (options.tile_size) scene.texture.tile_size = *options.tile_size;
+  if (options.run.velocity) scene.tracking.velocity = *options.run.velocity;
+  set_pictures(options, sequence, scene);
+  return scene;
+}
+
+}  // namespace
+
+scenes::RecordedSpec recorded_spec(const TrackOptions& options) {
+  scenes::RecordedSpec spec;
+  for (const fs::path& file : options.particles) spec.files.push_back(file.string());
+  if (options.time_step) spec.frame_interval = *options.time_step;
+  if (options.frame_rate) spec.frame_interval = 1 / *options.frame_rate;
+  if (options.no_ids) spec.ids = "none";
+  return spec;
+}
+
+int track_command(const TrackOptions& options) {
+  ParticleSequence sequence = scenes::open_sequence(recorded_spec(options), fs::current_path().string());
+  for (const std::string& warning : sequence.warnings) warn(warning);
+  say(options, fmt::format("{} files from {}, one every {:.6g} s", sequence.files.size(),
+                           sequence.files.front().string(), sequence.interval));
+  for (const std::string& note : sequence.notes) say(options, note);
+  RunOptions run = options.run;
+  scenes::Scene scene = scene_of(options, sequence);
+  run.frames = scene.frames;
+  if (run.out.empty()) run.out = fs::path("output") / scene.name;
+  const double spacing = scene.particles.spacing;
+  say(options,
+      fmt::format("effective radius {:.4g} m ({:.3g} spacings), edge length {:.4g} m ({:.3g} spacings), velocity {}",
+                  scene.tracking.radius * spacing, scene.tracking.radius, scene.tracking.edge_length * spacing,
+                  scene.tracking.edge_length, scene.tracking.velocity));
+  // As if read from a file: every value is checked, and scene.json in the run directory repeats this run.
+  run_scene(scenes::parse_scene(scenes::write_scene(scene), "the options of flowskin track", scene.directory,
+                                scene_vocabulary()),
+            run);
+  return 0;
+}
+
+}  // namespace flowskin::tools
