@@ -12,6 +12,7 @@
 #include "scenes/sources/make_source.h"
 #include "tools/errors.h"
 #include "tools/io/atomic_file.h"
+#include "tools/pipeline/comparison.h"
 #include "tools/pipeline/frame_statistics.h"
 #include "tools/pipeline/frame_writer.h"
 #include "tools/pipeline/interruption.h"
@@ -45,6 +46,7 @@ class SceneRun {
   void run();
 
  private:
+  void start_comparison();
   void describe();
   void advance(int frame);
   void record(int frame);
@@ -62,6 +64,7 @@ class SceneRun {
   std::unique_ptr<tracking::Tracker> tracker_;
   std::unique_ptr<FrameWriter> writer_;
   std::unique_ptr<PictureMaker> pictures_;
+  std::unique_ptr<Comparison> comparison_;
   FrameStatistics statistics_;
   std::vector<FrameRow> rows_;
   std::map<std::string, double> booked_;  // seconds of each stage up to the last row
@@ -89,6 +92,16 @@ SceneRun::SceneRun(const RunOptions& options, scenes::Scene scene, const RunDire
   writer_ = std::make_unique<FrameWriter>(directory_, scene_.output, texture_);
   if (scene_.render.enabled)
     pictures_ = std::make_unique<PictureMaker>(directory_, scene_, texture_, bounds(start.positions));
+  if (!options_.compare.empty()) start_comparison();
+}
+
+void SceneRun::start_comparison() {
+  const scenes::ParticleState& start = source_->state();
+  comparison_ = clock_.time("comparison", [&] {
+    return std::make_unique<Comparison>(scene_, directory_, methods_to_compare(options_.compare), *tracker_,
+                                        to_particles(start));
+  });
+  if (scene_.render.enabled) comparison_->make_pictures(texture_, bounds(start.positions));
 }
 
 void SceneRun::describe() {
@@ -103,6 +116,7 @@ void SceneRun::describe() {
         tracker_->mesh().positions.size(), settings.velocity, scene_.tracking.integrator, settings.field.radius,
         settings.field.threshold, settings.edge_length, settings.fairing_iterations));
   }
+  if (comparison_) log_.info(comparison_->description());
 }
 
 void SceneRun::advance(int frame) {
@@ -111,8 +125,13 @@ void SceneRun::advance(int frame) {
     const double time = (frame - 1 + double(step) / steps) / scene_.frame_rate;
     clock_.time("source", [&] { source_->advance_to(time); });
     if (!tracker_) continue;
-    clock_.time("tracking", [&] { tracker_->advance(to_particles(source_->state())); });
+    const tracking::Particles particles = to_particles(source_->state());
+    const double tracked_before = clock_.seconds("tracking");
+    clock_.time("tracking", [&] { tracker_->advance(particles); });
     statistics_.add(tracker_->report());
+    if (!comparison_) continue;
+    const double seconds = clock_.seconds("tracking") - tracked_before;
+    clock_.time("comparison", [&] { comparison_->advance(particles, seconds); });
   }
 }
 
@@ -135,6 +154,7 @@ void SceneRun::record(int frame) {
       if (surface) pictures_->draw(frame, *surface);
     });
   }
+  if (comparison_) clock_.time("comparison", [&] { comparison_->record(frame, rest_, particles); });
   write_row(frame, surface.get());
 }
 
@@ -185,13 +205,12 @@ void SceneRun::run() {
 }
 
 void SceneRun::finish(double started) {
+  const auto to_log = [&](const std::string& line) { log_.info(line); };
   if (pictures_) {
     clock_.time("contact sheet", [&] { make_contact_sheet(directory_, scene_.frame_rate); });
-    if (scene_.output.video)
-      clock_.time("videos", [&] {
-        make_videos(directory_, scene_.frame_rate, [&](const std::string& line) { log_.info(line); });
-      });
+    if (scene_.output.video) clock_.time("videos", [&] { make_videos(directory_, scene_.frame_rate, to_log); });
   }
+  if (comparison_) clock_.time("comparison", [&] { comparison_->finish(to_log); });
   log_.detail("at the end: " + source_->statistics().summary);
   for (const auto& [stage, seconds] : clock_.stages()) log_.info(fmt::format("{:>14}: {:8.2f} s", stage, seconds));
   log_.info(fmt::format("{:>14}: {:8.2f} s", "in all", wall_seconds() - started));
@@ -201,6 +220,8 @@ void SceneRun::finish(double started) {
   const auto& last = rows_.back();
   log_.info(fmt::format("particles that left the domain: {}; paths stopped at a wall: {}", last.left_domain,
                         last.wall_crossings));
+  if (comparison_)
+    for (const std::string& line : comparison_->ranking()) log_.info(line);
   log_.info("done: " + directory_.root().string());
 }
 
@@ -209,6 +230,9 @@ void SceneRun::finish(double started) {
 void run_scene(const RunOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   scenes::Scene scene = scene_as_run(options);
+  if (!methods_to_compare(options.compare).empty() && !scene.tracking.enabled)
+    throw InputError(fmt::format("--compare needs a tracked surface, but {} has tracking.enabled false",
+                                 options.scene_file.string()));
   const RunDirectory directory(options.out.empty() ? std::filesystem::path("output") / options.scene_file.stem()
                                                    : options.out);
   directory.prepare();
