@@ -11,7 +11,6 @@
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/render/video.h"
 #include "tools/report/compare_report.h"
-#include "tools/report/stage_clock.h"
 #include "tracking/ground_truth/mesh_errors.h"
 #include "tracking/ground_truth/quantile.h"
 #include "tracking/mesh/mesh_measures.h"
@@ -23,6 +22,7 @@ namespace {
 
 constexpr const char* kAll = "all";
 constexpr const char* kTwin = "curvature-belyaev";  // the same velocity by another formula
+constexpr const char* kOthers = "other methods";    // stage of the clock
 constexpr double kReachInSpacings = 2;              // of closest points
 
 std::string joined(const std::vector<std::string>& words) {
@@ -124,12 +124,12 @@ std::vector<std::string> methods_to_compare(const std::string& list) {
 
 Comparison::Comparison(const scenes::Scene& scene, const RunDirectory& directory,
                        const std::vector<std::string>& methods, const tracking::Tracker& scene_tracker,
-                       const tracking::Particles& start)
-    : scene_(scene), directory_(directory), truth_(scene, scene_tracker.settings().field, start) {
+                       const tracking::Particles& start, StageClock& clock)
+    : scene_(scene), directory_(directory), truth_(scene, scene_tracker.settings().field, start), clock_(clock) {
   for (const std::string& method : methods) {
     Entry& entry = entries_.emplace_back(Entry{method, nullptr, &scene_tracker, {}});
     if (method == scene_tracker.settings().velocity) continue;
-    entry.own = std::make_unique<tracking::Tracker>(settings_for(scene, method), start);
+    clock_.time(kOthers, [&] { entry.own = std::make_unique<tracking::Tracker>(settings_for(scene, method), start); });
     entry.tracker = entry.own.get();
   }
   truth_.start_markers(scene_tracker.mesh());
@@ -150,16 +150,16 @@ std::string Comparison::description() const {
 
 void Comparison::advance(const tracking::Particles& particles, double scene_tracker_seconds) {
   for (Entry& entry : entries_) {
-    const double started = wall_seconds();
-    if (entry.own) entry.own->advance(particles);
-    entry.counts.seconds += entry.own ? wall_seconds() - started : scene_tracker_seconds;
+    const double before = clock_.seconds(kOthers);
+    if (entry.own) clock_.time(kOthers, [&] { entry.own->advance(particles); });
+    entry.counts.seconds += entry.own ? clock_.seconds(kOthers) - before : scene_tracker_seconds;
     const tracking::TrackerReport& report = entry.tracker->report();
     entry.counts.reextractions += report.reextracted;
     entry.counts.splits += report.splits;
     entry.counts.collapses += report.collapses;
     entry.counts.flips += report.flips;
   }
-  truth_.advance(particles);
+  clock_.time("markers", [&] { truth_.advance(particles); });
   // Where there was no surface before, all methods begin with the same one.
   truth_.start_markers(entries_.front().tracker->mesh());
 }
@@ -182,6 +182,11 @@ CompareRow Comparison::measure(int frame, const Entry& entry, const tracking::Me
 }
 
 void Comparison::record(int frame, const RestFrame& rest, const ParticleFrame& particles) {
+  clock_.time("comparison", [&] { measure_all(frame); });
+  if (pictures_) clock_.time("tiles", [&] { draw(frame, rest, particles); });
+}
+
+void Comparison::measure_all(int frame) {
   const tracking::MetaballField field = truth_.field();
   const tracking::Flow flow = truth_.flow();
   CompareRow of_markers;
@@ -195,7 +200,6 @@ void Comparison::record(int frame, const RestFrame& rest, const ParticleFrame& p
     entry.counts = {};
   }
   write_compare_csv(directory_.compare_csv(), rows_);
-  if (pictures_) draw(frame, rest, particles);
 }
 
 void Comparison::draw(int frame, const RestFrame& rest, const ParticleFrame& particles) {

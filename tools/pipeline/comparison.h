@@ -12,6 +12,7 @@
 #include "tools/pipeline/ground_truth.h"
 #include "tools/pipeline/run_directory.h"
 #include "tools/report/compare_csv.h"
+#include "tools/report/stage_clock.h"
 #include "tools/textures/texture_mapping.h"
 #include "tracking/tracker.h"
 
@@ -27,8 +28,9 @@ class Comparison {
   /// @param methods as methods_to_compare gives them; at least one
   /// @param scene_tracker carries the mesh of the scene's own method; where that is among the methods, it serves for
   /// it. Must outlive this. @param start the particles at the start, which the scene's tracker has seen.
+  /// @param clock gets the time that all this takes
   Comparison(const scenes::Scene& scene, const RunDirectory& directory, const std::vector<std::string>& methods,
-             const tracking::Tracker& scene_tracker, const tracking::Particles& start);
+             const tracking::Tracker& scene_tracker, const tracking::Particles& start, StageClock& clock);
 
   /// Small pictures in images/ as well.
   void make_pictures(const Image& texture, const sph::Box& fluid);
@@ -55,12 +57,14 @@ class Comparison {
   };
   CompareRow measure(int frame, const Entry& entry, const tracking::MetaballField& field,
                      const tracking::Flow& flow) const;
+  void measure_all(int frame);
   void draw(int frame, const RestFrame& rest, const ParticleFrame& particles);
 
   const scenes::Scene& scene_;
   const RunDirectory& directory_;
   std::vector<Entry> entries_;
   GroundTruth truth_;
+  StageClock& clock_;
   std::unique_ptr<ComparisonPictures> pictures_;
   std::vector<CompareRow> rows_;
 };

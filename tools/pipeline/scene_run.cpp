@@ -97,10 +97,8 @@ SceneRun::SceneRun(const RunOptions& options, scenes::Scene scene, const RunDire
 
 void SceneRun::start_comparison() {
   const scenes::ParticleState& start = source_->state();
-  comparison_ = clock_.time("comparison", [&] {
-    return std::make_unique<Comparison>(scene_, directory_, methods_to_compare(options_.compare), *tracker_,
-                                        to_particles(start));
-  });
+  comparison_ = std::make_unique<Comparison>(scene_, directory_, methods_to_compare(options_.compare), *tracker_,
+                                             to_particles(start), clock_);
   if (scene_.render.enabled) comparison_->make_pictures(texture_, bounds(start.positions));
 }
 
@@ -129,9 +127,7 @@ void SceneRun::advance(int frame) {
     const double tracked_before = clock_.seconds("tracking");
     clock_.time("tracking", [&] { tracker_->advance(particles); });
     statistics_.add(tracker_->report());
-    if (!comparison_) continue;
-    const double seconds = clock_.seconds("tracking") - tracked_before;
-    clock_.time("comparison", [&] { comparison_->advance(particles, seconds); });
+    if (comparison_) comparison_->advance(particles, clock_.seconds("tracking") - tracked_before);
   }
 }
 
@@ -154,7 +150,7 @@ void SceneRun::record(int frame) {
       if (surface) pictures_->draw(frame, *surface);
     });
   }
-  if (comparison_) clock_.time("comparison", [&] { comparison_->record(frame, rest_, particles); });
+  if (comparison_) comparison_->record(frame, rest_, particles);
   write_row(frame, surface.get());
 }
 
@@ -214,6 +210,7 @@ void SceneRun::finish(double started) {
   log_.detail("at the end: " + source_->statistics().summary);
   for (const auto& [stage, seconds] : clock_.stages()) log_.info(fmt::format("{:>14}: {:8.2f} s", stage, seconds));
   log_.info(fmt::format("{:>14}: {:8.2f} s", "in all", wall_seconds() - started));
+  log_.info(fmt::format("{:>14}: {:8.0f} MB at most", "memory", peak_memory()));
   if (tracker_)
     log_.info(fmt::format("the guard extracted the surface anew in {} of {} frames", statistics_.frames_reextracted(),
                           scene_.frames));

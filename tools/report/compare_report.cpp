@@ -118,6 +118,7 @@ PlotSheet compare_plots(const std::string& scene, const std::vector<CompareRow>&
   sheet.plots[4].log_y = sheet.plots[6].log_y = true;
   if (!rows.empty()) {
     const CompareRow& last = rows.back();
+    sheet.plots[7].note = fmt::format("the markers themselves at the end: {:.3g}", last.marker_drift / spacing);
     sheet.plots[0].note = fmt::format("{} of {} markers have left the surface at the end", last.markers_left,
                                       last.markers + last.markers_left);
   }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kSameSide = 0.3;       // cosine between a marker's normal and that of the mesh beside it
 constexpr double kSameMaterial = 1e-6;  // of the reach: a vertex whose rest position has moved less is what it was
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 Vec3 interpolated(const std::vector<Vec3>& values, const std::vector<Triangle>& triangles, const MeshPoint& point) {
@@ -37,8 +38,10 @@ ErrorStatistics statistics_of(const std::vector<double>& all, double& found, int
 
 /// NaN for markers that have left or that have no counterpart.
 struct Distances {
-  explicit Distances(std::size_t count) : texture(count, kNone), path(count, kNone), vertex_path(count, kNone) {}
+  explicit Distances(std::size_t count)
+      : texture(count, kNone), path(count, kNone), vertex_path(count, kNone), path_gap(count, kNone) {}
   std::vector<double> texture, path, vertex_path;
+  std::vector<double> path_gap;  // between the marker's rest position and the closest one on the mesh
 };
 
 void measure_on_surface(const SurfaceMesh& mesh, const Markers& markers, double reach, Distances& distances) {
@@ -51,9 +54,10 @@ void measure_on_surface(const SurfaceMesh& mesh, const Markers& markers, double 
     if (here.triangle >= 0)
       distances.texture[i] =
           (interpolated(mesh.rest_positions, mesh.triangles, here) - markers.rest_positions[i]).norm();
-    const MeshPoint material = at_rest.closest(markers.rest_positions[i], reach);
-    if (material.triangle >= 0)
-      distances.path[i] = (interpolated(mesh.positions, mesh.triangles, material) - markers.positions[i]).norm();
+    const MeshPoint material = at_rest.closest(markers.rest_positions[i], kAnywhere);
+    if (material.triangle < 0) continue;
+    distances.path[i] = (interpolated(mesh.positions, mesh.triangles, material) - markers.positions[i]).norm();
+    if (material.distance < reach) distances.path_gap[i] = material.distance;
   }
 }
 
@@ -81,6 +85,7 @@ MarkerErrors marker_errors(const SurfaceMesh& mesh, const Markers& markers, doub
   const int count = markers.on_surface();
   errors.texture = statistics_of(distances.texture, errors.texture_found, count);
   errors.path = statistics_of(distances.path, errors.path_found, count);
+  statistics_of(distances.path_gap, errors.path_found, count);
   errors.vertex_path = statistics_of(distances.vertex_path, errors.vertices_kept, count);
   return errors;
 }

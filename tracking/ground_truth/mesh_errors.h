@@ -16,8 +16,8 @@ struct MarkerErrors {
   /// texture at this place is from the material at this place, measured on the fluid at rest.
   ErrorStatistics texture;
   double texture_found = 0;  ///< Share of markers that have the mesh within reach, facing the same way.
-  /// Distance between a marker and the point of the mesh that carries its material (whose rest position is closest to
-  /// the marker's): how far the texture has been carried astray, measured in space.
+  /// Distance between a marker and the point of the mesh that carries its material, or, where that is no longer on the
+  /// mesh, the material closest to it at rest: how far the texture has been carried astray, measured in space.
   ErrorStatistics path;
   double path_found = 0;  ///< Share of markers whose material is on the mesh, within reach at rest.
   /// Distance between a marker and the vertex on which it started, while that is there and still the same material.
