@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "tools/errors.h"
@@ -93,7 +94,8 @@ void add_mesh(const tracking::SurfaceMesh& mesh, CompareRow& row) {
   const std::vector<double> angles = tracking::smallest_angles(mesh.positions, mesh.triangles);
   row.angle_min = degrees * tracking::quantile(angles, 0);
   row.angle_p05 = degrees * tracking::quantile(angles, 0.05);
-  row.angle_mean = degrees * tracking::mesh_quality(mesh.positions, mesh.triangles).mean_smallest_angle;
+  if (!angles.empty())
+    row.angle_mean = degrees * std::accumulate(angles.begin(), angles.end(), 0.0) / double(angles.size());
   std::vector<double> stretch;
   for (const auto& triangle : tracking::texture_stretch(mesh)) stretch.push_back(triangle.largest);
   row.stretch_median = tracking::quantile(stretch, 0.5);
