@@ -47,6 +47,10 @@ CLI::App* add_run(CLI::App& app, Choice& choice) {
       ->check(CLI::Range(0, 1000000));
   run->add_option("--velocity", choice.run.velocity, "Velocity method (default: the scene's); see `flowskin methods`")
       ->check(CLI::IsMember(method_names()));
+  run->add_option(
+      "--compare", choice.run.compare,
+      "Carry one mesh for each of these velocity methods (comma separated, or all) and measure their errors; "
+      "see docs/compare.md");
   run->add_option("--threads", choice.run.threads, "Threads (default: all); results do not depend on it")
       ->check(CLI::Range(1, kMaxThreads));
   run->add_flag("--no-pictures", choice.no_pictures, "Neither pictures nor videos");

@@ -1,11 +1,11 @@
 #include "tools/pipeline/frame_statistics.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "tools/pipeline/tracker_bridge.h"
+#include "tracking/ground_truth/quantile.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/texture_stretch.h"
 #include "tracking/topology/material.h"
@@ -14,13 +14,7 @@ namespace flowskin::tools {
 
 namespace {
 
-/// The value below which `share` of the values lie; 0 where there are none.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto nth = values.begin() + std::ptrdiff_t(std::floor(share * double(values.size() - 1)));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
+using tracking::quantile;
 
 void describe_surface(const tracking::SurfaceMesh& mesh, FrameRow& row) {
   row.vertices = mesh.positions.size();

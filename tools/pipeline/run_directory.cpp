@@ -30,6 +30,8 @@ fs::path RunDirectory::particle_image(int frame) const {
   return image_folder() / numbered("particles_", frame, ".png");
 }
 
+fs::path RunDirectory::compare_image(int frame) const { return image_folder() / numbered("compare_", frame, ".png"); }
+
 void RunDirectory::prepare() const {
   try {
     if (fs::exists(root_) && !fs::is_directory(root_))
@@ -39,7 +41,8 @@ void RunDirectory::prepare() const {
         throw InputError(fmt::format("{} is not empty and holds no earlier run; give an empty or new folder to --out",
                                      root_.string()));
       for (const fs::path& old : {surface_folder(), particle_folder(), image_folder(), scene(), log(), frames_csv(),
-                                  contact_sheet(), surface_video(), particle_video()})
+                                  contact_sheet(), surface_video(), particle_video(), compare_csv(), compare_markdown(),
+                                  compare_sheet(), compare_video(), root_ / "compare.svg", root_ / "compare.png"})
         fs::remove_all(old);
     }
     for (const fs::path& folder : {surface_folder(), particle_folder(), image_folder()}) fs::create_directories(folder);

@@ -25,6 +25,12 @@ class RunDirectory {
   std::filesystem::path contact_sheet() const { return root_ / "contact_sheet.png"; }
   std::filesystem::path surface_video() const { return root_ / "surface.mp4"; }
   std::filesystem::path particle_video() const { return root_ / "particles.mp4"; }
+  std::filesystem::path compare_csv() const { return root_ / "compare.csv"; }
+  std::filesystem::path compare_markdown() const { return root_ / "compare.md"; }
+  /// Without its extension: .svg and .png
+  std::filesystem::path compare_plots() const { return root_ / "compare"; }
+  std::filesystem::path compare_sheet() const { return root_ / "compare_sheet.png"; }
+  std::filesystem::path compare_video() const { return root_ / "compare.mp4"; }
   std::filesystem::path surface_folder() const { return root_ / "surface"; }
   std::filesystem::path particle_folder() const { return root_ / "particles"; }
   std::filesystem::path image_folder() const { return root_ / "images"; }
@@ -34,6 +40,7 @@ class RunDirectory {
   std::filesystem::path particles(int frame, const std::string& extension) const;
   std::filesystem::path surface_image(int frame) const;
   std::filesystem::path particle_image(int frame) const;
+  std::filesystem::path compare_image(int frame) const;
 
   /// Numbers of the frames whose file `folder`/`prefix`NNNN`extension` exists, ascending.
   static std::vector<int> frames_in(const std::filesystem::path& folder, const std::string& prefix,

@@ -12,6 +12,7 @@ struct RunOptions {
   std::filesystem::path out;            ///< empty: output/<name of the scene file>
   std::optional<int> frames;            ///< instead of the scene's
   std::optional<std::string> velocity;  ///< instead of the scene's
+  std::string compare;                  ///< velocity methods to compare, comma separated, or "all"; empty: none
   int threads = 0;                      ///< 0: as many as the machine has
   bool pictures = true;
   bool video = true;

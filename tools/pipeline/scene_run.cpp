@@ -15,6 +15,7 @@
 #include "scenes/sources/make_source.h"
 #include "tools/errors.h"
 #include "tools/io/atomic_file.h"
+#include "tools/pipeline/comparison.h"
 #include "tools/pipeline/frame_statistics.h"
 #include "tools/pipeline/frame_writer.h"
 #include "tools/pipeline/interruption.h"
@@ -88,6 +89,7 @@ class SceneRun {
   void run();
 
  private:
+  void start_comparison();
   void describe();
   void advance(int frame);
   void record(int frame);
@@ -106,6 +108,7 @@ class SceneRun {
   std::unique_ptr<tracking::Tracker> tracker_;
   std::unique_ptr<FrameWriter> writer_;
   std::unique_ptr<PictureMaker> pictures_;
+  std::unique_ptr<Comparison> comparison_;
   FrameStatistics statistics_;
   std::vector<FrameRow> rows_;
   bool warned_of_ghosts_ = false;
@@ -141,6 +144,14 @@ SceneRun::SceneRun(const RunOptions& options, scenes::Scene scene, const RunDire
   writer_ = std::make_unique<FrameWriter>(directory_, scene_.output, texture_);
   if (scene_.render.enabled)
     pictures_ = std::make_unique<PictureMaker>(directory_, scene_, texture_, bounds(start.positions));
+  if (!options_.compare.empty()) start_comparison();
+}
+
+void SceneRun::start_comparison() {
+  const scenes::ParticleState& start = source_->state();
+  comparison_ = std::make_unique<Comparison>(scene_, directory_, methods_to_compare(options_.compare), *tracker_,
+                                             to_particles(start), clock_);
+  if (scene_.render.enabled) comparison_->make_pictures(texture_, bounds(start.positions));
 }
 
 void SceneRun::describe() {
@@ -155,6 +166,7 @@ void SceneRun::describe() {
         tracker_->mesh().positions.size(), settings.velocity, scene_.tracking.integrator, settings.field.radius,
         settings.field.threshold, settings.edge_length, settings.fairing_iterations));
   }
+  if (comparison_) log_.info(comparison_->description());
 }
 
 void SceneRun::advance(int frame) {
@@ -163,9 +175,12 @@ void SceneRun::advance(int frame) {
     const double time = (frame - 1 + double(step) / steps) / scene_.frame_rate;
     clock_.time("source", [&] { source_->advance_to(time); });
     if (!tracker_) continue;
-    clock_.time("tracking", [&] { tracker_->advance(to_particles(source_->state())); });
+    const tracking::Particles particles = to_particles(source_->state());
+    const double tracked_before = clock_.seconds("tracking");
+    clock_.time("tracking", [&] { tracker_->advance(particles); });
     statistics_.add(tracker_->report());
     warn_of_ghosts(time);
+    if (comparison_) comparison_->advance(particles, clock_.seconds("tracking") - tracked_before);
   }
 }
 
@@ -205,6 +220,7 @@ void SceneRun::record(int frame) {
       if (surface) pictures_->draw(frame, *surface);
     });
   }
+  if (comparison_) comparison_->record(frame, rest_, particles);
   write_row(frame, state.positions.size(), surface.get());
 }
 
@@ -256,22 +272,24 @@ void SceneRun::run() {
 }
 
 void SceneRun::finish(double started) {
+  const auto to_log = [&](const std::string& line) { log_.info(line); };
   if (pictures_) {
     clock_.time("contact sheet", [&] { make_contact_sheet(directory_, scene_.frame_rate); });
-    if (scene_.output.video)
-      clock_.time("videos", [&] {
-        make_videos(directory_, scene_.frame_rate, [&](const std::string& line) { log_.info(line); });
-      });
+    if (scene_.output.video) clock_.time("videos", [&] { make_videos(directory_, scene_.frame_rate, to_log); });
   }
+  if (comparison_) clock_.time("comparison", [&] { comparison_->finish(to_log); });
   log_.detail("at the end: " + source_->statistics().summary);
   for (const auto& [stage, seconds] : clock_.stages()) log_.info(fmt::format("{:>14}: {:8.2f} s", stage, seconds));
   log_.info(fmt::format("{:>14}: {:8.2f} s", "in all", wall_seconds() - started));
+  log_.info(fmt::format("{:>14}: {:8.0f} MB at most", "memory", peak_memory()));
   if (tracker_)
     log_.info(fmt::format("the guard extracted the surface anew in {} of {} frames", statistics_.frames_reextracted(),
                           scene_.frames));
   const auto& last = rows_.back();
   log_.info(fmt::format("particles that left the domain: {}; paths stopped at a wall: {}", last.left_domain,
                         last.wall_crossings));
+  if (comparison_)
+    for (const std::string& line : comparison_->ranking()) log_.info(line);
   log_.info("done: " + directory_.root().string());
 }
 
@@ -285,6 +303,9 @@ void run_scene(const RunOptions& options) {
 
 void run_scene(scenes::Scene scene, const RunOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
+  if (!methods_to_compare(options.compare).empty() && !scene.tracking.enabled)
+    throw InputError(fmt::format("--compare needs a tracked surface, but {} has tracking.enabled false",
+                                 options.scene_file.string()));
   const RunDirectory directory(options.out);
   check_inputs_stay(scene, directory);
   directory.prepare();

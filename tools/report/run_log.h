@@ -27,5 +27,7 @@ class RunLog {
 std::string version_text();
 /// Processor, cores, memory and operating system, on one line.
 std::string machine_text();
+/// The most memory that the program has had at a time until now (MB).
+double peak_memory();
 
 }  // namespace flowskin::tools

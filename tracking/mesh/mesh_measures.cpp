@@ -111,6 +111,13 @@ MeshQuality mesh_quality(const std::vector<Vec3>& positions, const std::vector<T
   return quality;
 }
 
+std::vector<double> smallest_angles(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
+  std::vector<double> angles;
+  angles.reserve(triangles.size());
+  for (const Triangle& triangle : triangles) angles.push_back(smallest_angle(positions, triangle));
+  return angles;
+}
+
 std::vector<Vec3> vertex_normals(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
   std::vector<Vec3> normals(positions.size(), Vec3::Zero());
   for (const Triangle& triangle : triangles) {

@@ -35,6 +35,9 @@ struct MeshQuality {
 /// All zero for an empty mesh.
 MeshQuality mesh_quality(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
+/// Smallest angle of each triangle (rad).
+std::vector<double> smallest_angles(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+
 /// Twice the area vector of a triangle (m^2), along the outward normal.
 inline Vec3 doubled_area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
   const Vec3& a = positions[triangle[0]];

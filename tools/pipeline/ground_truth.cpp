@@ -1,0 +1,65 @@
+#include "tools/pipeline/ground_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flowskin::tools {
+namespace {
+
+// Runge-Kutta steps of the markers: no particle moves further than this share of the effective radius in one of them.
+constexpr double kStepInRadii = 0.25;
+constexpr int kMostSteps = 1000;
+constexpr double kStepInRadians = 0.02;
+
+int steps_for(double ratio) { return static_cast<int>(std::clamp(std::ceil(ratio), 1.0, double{kMostSteps})); }
+
+}  // namespace
+
+GroundTruth::GroundTruth(const scenes::Scene& scene, const tracking::FieldSettings& field, tracking::Particles start)
+    : field_(field), most_depth_(kMostDepthInSpacings * scene.particles.spacing), particles_(std::move(start)) {
+  if (scene.particles.source == scenes::ParticlesSpec::Source::prescribed) motion_.emplace(scene.particles.motion);
+}
+
+void GroundTruth::start_markers(const tracking::SurfaceMesh& mesh) {
+  if (!markers_.ids.empty() || mesh.positions.empty()) return;
+  markers_ = tracking::start_markers(mesh, particles_.time, kMostMarkers);
+  tracking::settle_markers(field(), most_depth_, markers_);
+}
+
+tracking::MetaballField GroundTruth::field() const { return {particles_.positions, particles_.velocities, field_}; }
+
+tracking::FlowAt GroundTruth::exact_flow() const {
+  return [this](double time) -> tracking::Flow {
+    return [this, time](const tracking::Vec3& x) { return motion_->velocity(x, time); };
+  };
+}
+
+tracking::Flow GroundTruth::flow() const {
+  return motion_ ? exact_flow()(particles_.time) : tracking::particle_flow(field());
+}
+
+int GroundTruth::exact_steps(double duration) const {
+  const double turned = duration * motion_->spec().angular_velocity.norm();
+  return steps_for(std::max(duration / motion_->integration_step(), turned / kStepInRadians));
+}
+
+void GroundTruth::advance(const tracking::Particles& particles) {
+  if (!markers_.ids.empty() && particles.time != particles_.time) {
+    const tracking::ParticlePaths paths(particles_, particles);
+    if (motion_) {
+      tracking::advect_markers(exact_flow(), particles.time, exact_steps(particles.time - particles_.time), markers_);
+    } else {
+      tracking::advect_markers(tracking::particle_flow(paths, field_), particles.time,
+                               steps_for(paths.longest_path() / (kStepInRadii * field_.radius)), markers_);
+    }
+  }
+  particles_ = particles;
+  if (!markers_.ids.empty()) tracking::settle_markers(field(), most_depth_, markers_);
+}
+
+std::string GroundTruth::description() const {
+  return motion_ ? "the prescribed motion, which is known exactly" : "the particles' velocities (moving least squares)";
+}
+
+}  // namespace flowskin::tools
