@@ -1,0 +1,59 @@
+#include "tools/experiments/experiment.h"
+
+#include <algorithm>
+
+#include "scenes/scene_file.h"
+#include "tools/io/atomic_file.h"
+#include "tools/pipeline/tracker_bridge.h"
+#include "tracking/velocity/velocity_method.h"
+
+namespace flowskin::tools {
+namespace {
+
+// The method shown as the best one, by preference: the first that is registered. Set it here.
+constexpr const char* kBestMethods[] = {"rigid-global", "curvature"};
+
+}  // namespace
+
+std::string verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::confirmed:
+      return "confirmed";
+    case Verdict::in_part:
+      return "confirmed in part";
+    case Verdict::not_confirmed:
+      break;
+  }
+  return "not confirmed";
+}
+
+Verdict verdict_of(const std::vector<bool>& holds) {
+  const auto count = std::count(holds.begin(), holds.end(), true);
+  if (count == 0) return Verdict::not_confirmed;
+  return std::size_t(count) == holds.size() ? Verdict::confirmed : Verdict::in_part;
+}
+
+scenes::Scene PaperRun::scene(const std::string& name) const {
+  return scenes::read_scene(scenes / (name + ".json"), scene_vocabulary());
+}
+
+void PaperRun::write_csv(const std::string& name, const ResultTable& table, ExperimentReport& report) const {
+  write_file(out / (name + ".csv"), table.csv());
+  report.files.push_back(name + ".csv");
+}
+
+std::vector<std::string> compared_methods() {
+  std::vector<std::string> names;
+  for (const auto& method : tracking::velocity_methods())
+    if (method.name != "curvature-belyaev") names.push_back(method.name);
+  return names;
+}
+
+std::string best_method() {
+  const std::vector<std::string> names = compared_methods();
+  for (const char* name : kBestMethods)
+    if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+  return names.back();
+}
+
+}  // namespace flowskin::tools

@@ -1,0 +1,66 @@
+// What every experiment is given, and what it reports.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+#include "tools/experiments/result_table.h"
+#include "tools/report/run_log.h"
+
+namespace flowskin::tools {
+
+enum class Verdict { confirmed, in_part, not_confirmed };
+/// "confirmed", "confirmed in part", "not confirmed"
+std::string verdict_name(Verdict verdict);
+/// All hold: confirmed; none: not confirmed; else in part.
+Verdict verdict_of(const std::vector<bool>& holds);
+
+/// A claim of the paper, or a target of this project, beside what was measured.
+struct Claim {
+  std::string source;    ///< "Fig. 2"; "target" where the claim is not the paper's.
+  std::string claim;     ///< In words.
+  std::string measured;  ///< Numbers with units.
+  Verdict verdict = Verdict::not_confirmed;
+  std::string reason;  ///< Why, where the numbers do not speak for themselves.
+};
+
+/// One section of summary.md.
+struct ExperimentReport {
+  std::string title;
+  std::string setup;  ///< Scene, settings, what is true: a paragraph of Markdown.
+  std::vector<Claim> claims;
+  std::vector<std::pair<std::string, ResultTable>> tables;        ///< Caption and numbers.
+  std::vector<std::pair<std::string, std::string>> pictures;      ///< Caption and file name.
+  std::vector<std::string> files;                                 ///< CSV files.
+  double seconds = 0;                                             ///< Wall time.
+};
+
+/// What all experiments share.
+struct PaperRun {
+  std::filesystem::path scenes;      ///< Folder of the experiments' scene files.
+  std::filesystem::path out;         ///< Folder of the results.
+  bool quick = false;                ///< A reduced version for tests: fewer steps, revolutions and parameters.
+  std::vector<std::string> methods;  ///< Velocity methods compared, in the order of the registry.
+  std::string best;                  ///< The one shown beside the paper's.
+
+  /// @throws scenes::SceneError where the file is missing or wrong.
+  scenes::Scene scene(const std::string& name) const;
+  /// Writes `name`.csv and lists it in the report. @throws RunError
+  void write_csv(const std::string& name, const ResultTable& table, ExperimentReport& report) const;
+};
+
+/// Methods that the experiments compare: all registered ones but `curvature-belyaev`, which equals `curvature`.
+std::vector<std::string> compared_methods();
+/// The method that stands for this project beside those of the paper.
+std::string best_method();
+
+ExperimentReport translation_experiment(const PaperRun& run);  ///< Fig. 2
+ExperimentReport circling_experiment(const PaperRun& run);     ///< Figs. 4, 8, 9
+ExperimentReport ring_experiment(const PaperRun& run);         ///< Figs. 6, 7
+ExperimentReport convergence_experiment(const PaperRun& run);  ///< Step counts and order.
+ExperimentReport timing_experiment(const PaperRun& run);       ///< Milliseconds a step.
+ExperimentReport stairs_experiment(const PaperRun& run);       ///< Figs. 10, 11
+
+}  // namespace flowskin::tools
