@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/experiments/paper_run.h"
 #include "tools/pipeline/run_options.h"
 
 namespace flowskin::tools {
@@ -27,6 +28,7 @@ struct RenderOptions {
 int render_command(const RenderOptions& options);
 int info_command(const std::vector<std::filesystem::path>& files);
 int methods_command();
+int paper_command(const PaperOptions& options);
 /// `what`: "defaults" or "keys" (as a Markdown table).
 int scene_command(const std::string& what);
 

@@ -31,10 +31,10 @@ struct ExperimentReport {
   std::string title;
   std::string setup;  ///< Scene, settings, what is true: a paragraph of Markdown.
   std::vector<Claim> claims;
-  std::vector<std::pair<std::string, ResultTable>> tables;        ///< Caption and numbers.
-  std::vector<std::pair<std::string, std::string>> pictures;      ///< Caption and file name.
-  std::vector<std::string> files;                                 ///< CSV files.
-  double seconds = 0;                                             ///< Wall time.
+  std::vector<std::pair<std::string, ResultTable>> tables;    ///< Caption and numbers.
+  std::vector<std::pair<std::string, std::string>> pictures;  ///< Caption and file name.
+  std::vector<std::string> files;                             ///< CSV files.
+  double seconds = 0;                                         ///< Wall time.
 };
 
 /// What all experiments share.

@@ -85,7 +85,8 @@ Image picture(const scenes::Scene& scene, const SurfaceFrame& frame) {
 }
 
 Color error_color(double share) {
-  static const Vec3f low = to_linear({45, 96, 180}), middle = to_linear({236, 236, 232}), high = to_linear({190, 36, 30});
+  static const Vec3f low = to_linear({45, 96, 180}), middle = to_linear({236, 236, 232}),
+                     high = to_linear({190, 36, 30});
   const float s = float(std::clamp(std::isfinite(share) ? share : 1.0, 0.0, 1.0));
   return s < 0.5f ? to_srgb((1 - 2 * s) * low + 2 * s * middle) : to_srgb((2 - 2 * s) * middle + (2 * s - 1) * high);
 }

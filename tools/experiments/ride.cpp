@@ -80,17 +80,16 @@ class Rider {
         moving_(motion_, Truth::motion, starts_),
         unspinning_(motion_, Truth::unspinning, starts_) {}
 
-  Ride go(tracking::SurfaceMesh mesh) {
+  Ride go() {
     Ride ride;
     ride.settings = settings_;
     for (int period = 1; period <= settings_.periods; ++period) {
       for (int i = 0; i < settings_.steps_per_period; ++i) step((period - 1) * settings_.steps_per_period + i);
       ride.checkpoints.push_back({period, moving_.errors(positions_), unspinning_.errors(positions_),
-                                  edge_strain(tracking::edge_lengths(topology_, positions_), rest_lengths_), failed_});
+                                  edge_strain(tracking::edge_lengths(topology_, positions_), rest_lengths_), failed_,
+                                  positions_});
       if (interrupted()) throw RunError("interrupted");
     }
-    mesh.positions = positions_;
-    ride.mesh = std::move(mesh);
     return ride;
   }
 
@@ -117,8 +116,8 @@ class Rider {
     const tracking::ProjectionSettings projection = tracking::default_projection(field.settings());
     failed_ = int(tracking::project_to_surface(field, projection, positions_).failed.size());
     if (settings_.fairing_iterations == 0) return;
-    tracking::fair(field, topology_, rest_lengths_,
-                   {settings_.fairing_iterations, scene_.tracking.fairing_stiffness}, positions_);
+    tracking::fair(field, topology_, rest_lengths_, {settings_.fairing_iterations, scene_.tracking.fairing_stiffness},
+                   positions_);
     failed_ = int(tracking::project_to_surface(field, projection, positions_).failed.size());
   }
 
@@ -174,7 +173,7 @@ tracking::SurfaceMesh start_mesh(const scenes::Scene& scene) {
 }
 
 Ride take_ride(const scenes::Scene& scene, const tracking::SurfaceMesh& start, const RideSettings& settings) {
-  return Rider(scene, start, settings).go(start);
+  return Rider(scene, start, settings).go();
 }
 
 std::vector<Ride> take_rides(const scenes::Scene& scene, const tracking::SurfaceMesh& start,

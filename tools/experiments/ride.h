@@ -27,24 +27,24 @@ std::string integrator_name(tracking::Integrator integrator);
 
 /// Errors against one truth at the end of a period; lengths in effective radii sigma.
 struct RideErrors {
-  Distances back;             ///< The paper's measure: distance of the vertices to their start. Sees whole revolutions only.
-  Distances end;              ///< Distance to the true place now.
-  double path = 0;            ///< Mean distance to the true place, averaged over all steps so far.
+  Distances back;   ///< The paper's measure: distance of the vertices to their start. Sees whole revolutions only.
+  Distances end;    ///< Distance to the true place now.
+  double path = 0;  ///< Mean distance to the true place, averaged over all steps so far.
   double velocity_error = 0;  ///< Relative, averaged over all steps so far.
 };
 
 /// State at the end of a period.
 struct RideCheckpoint {
   int period = 0;
-  RideErrors errors;      ///< Against the scene's motion.
-  RideErrors unspinning;  ///< Against a motion without spin.
-  double strain = 0;      ///< RMS relative change of edge lengths since the start.
-  int failed = 0;         ///< Vertices that the last projection could not bring onto the surface.
+  RideErrors errors;            ///< Against the scene's motion.
+  RideErrors unspinning;        ///< Against a motion without spin.
+  double strain = 0;            ///< RMS relative change of edge lengths since the start.
+  int failed = 0;               ///< Vertices that the last projection could not bring onto the surface.
+  std::vector<Vec3> positions;  ///< Of the vertices (m).
 };
 
 struct Ride {
   RideSettings settings;
-  tracking::SurfaceMesh mesh;  ///< At the end; rest positions are the places at the start.
   std::vector<RideCheckpoint> checkpoints;
   const RideCheckpoint& last() const { return checkpoints.back(); }
 };
