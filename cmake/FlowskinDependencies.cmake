@@ -30,6 +30,15 @@ endif()
 add_library(flowskin_stb INTERFACE)
 target_include_directories(flowskin_stb SYSTEM INTERFACE ${FLOWSKIN_STB_INCLUDE_DIR})
 
+# cairo (for the plots) has no CMake package either; it is asked for through pkg-config.
+flowskin_find(PkgConfig pkg-config)
+pkg_check_modules(FLOWSKIN_CAIRO QUIET IMPORTED_TARGET cairo>=1.16 cairo-svg cairo-png)
+if(NOT FLOWSKIN_CAIRO_FOUND)
+  flowskin_missing("cairo 1.16 or later, with SVG and PNG" libcairo2-dev)
+endif()
+add_library(flowskin_cairo INTERFACE)
+target_link_libraries(flowskin_cairo INTERFACE PkgConfig::FLOWSKIN_CAIRO)
+
 if(FLOWSKIN_TESTS)
   flowskin_find(GTest libgtest-dev)
   find_package(benchmark QUIET)

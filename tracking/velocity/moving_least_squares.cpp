@@ -1,0 +1,89 @@
+#include "tracking/velocity/moving_least_squares.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace flowskin::tracking {
+namespace {
+
+/// Eigenvalue of the covariance (squared radii) below which the particles count as not spread along its direction.
+constexpr double least_spread = 1e-3;
+
+/// A particle near the point: lengths in effective radii, from the point.
+struct Sample {
+  double weight;
+  Vec3 offset;
+  Vec3 velocity;  // m/s
+};
+
+std::vector<Sample>& samples_around(const MetaballField& field, const Vec3& x) {
+  thread_local std::vector<int> found;
+  thread_local std::vector<Sample> samples;
+  samples.clear();
+  const double radius = field.settings().radius;
+  field.neighbors(x, radius, found);
+  for (const int i : found) {
+    const Vec3 offset = (field.positions()[i] - x) / radius;
+    const double u = std::max(0.0, 1 - offset.squaredNorm());
+    samples.push_back({u * u * u, offset, field.velocities().empty() ? Vec3(Vec3::Zero()) : field.velocities()[i]});
+  }
+  return samples;
+}
+
+/// Inverse of a covariance in the directions in which it is larger than least_spread, zero in the others, smoothly in
+/// between.
+Mat3 damped_inverse(const Mat3& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(covariance);
+  Vec3 inverse;
+  for (int k = 0; k < 3; ++k) {
+    const double ratio = std::max(0.0, solver.eigenvalues()[k] / least_spread);
+    const double ratio2 = ratio * ratio, ratio4 = ratio2 * ratio2;
+    inverse[k] = ratio4 * ratio2 * ratio / (1 + ratio4 * ratio4) / least_spread;
+  }
+  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+LocalFlow local_flow(const MetaballField& field, const Vec3& x) {
+  LocalFlow flow;
+  std::vector<Sample>& samples = samples_around(field, x);
+  flow.neighbors = static_cast<int>(samples.size());
+
+  double weights = 0;
+  Vec3 center = Vec3::Zero();
+  Vec3 mean = Vec3::Zero();
+  for (const Sample& sample : samples) {
+    weights += sample.weight;
+    center += sample.weight * sample.offset;
+    mean += sample.weight * sample.velocity;
+  }
+  if (!(weights > 0)) return flow;
+  flow.defined = true;
+  center /= weights;
+  mean /= weights;
+
+  Mat3 covariance = Mat3::Zero();
+  Mat3 products = Mat3::Zero();
+  for (Sample& sample : samples) {
+    sample.weight /= weights;
+    sample.offset -= center;
+    covariance += sample.weight * sample.offset * sample.offset.transpose();
+    products += sample.weight * (sample.velocity - mean) * sample.offset.transpose();
+  }
+  const Mat3 gradient = products * damped_inverse(covariance);  // per radius
+  flow.velocity = mean - gradient * center;
+  flow.gradient = gradient / field.settings().radius;
+
+  double rest = 0, all = 0;
+  for (const Sample& sample : samples) {
+    rest += sample.weight * (sample.velocity - mean - gradient * sample.offset).squaredNorm();
+    all += sample.weight * sample.velocity.squaredNorm();
+  }
+  if (all > 0) flow.misfit = std::min(1.0, std::sqrt(rest / all));
+  return flow;
+}
+
+}  // namespace flowskin::tracking
