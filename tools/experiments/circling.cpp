@@ -94,6 +94,39 @@ void add_table(const std::string& caption, const Body& body, bool without_spin, 
   report.tables.emplace_back(caption, table);
 }
 
+// Error by revolutions; `value` takes a checkpoint.
+template <class Value>
+Plot error_plot(const PaperRun& run, const Body& body, Integrator integrator, const std::string& title,
+                const std::string& measure, Value value) {
+  Plot plot;
+  plot.title = title;
+  plot.x_label = "revolutions";
+  plot.y_label = measure + " (sigma)";
+  plot.log_y = true;
+  for (const std::string& method : run.methods) {
+    std::vector<double> x, y;
+    for (const RideCheckpoint& checkpoint : body.ride(method, integrator).checkpoints) {
+      x.push_back(checkpoint.period);
+      y.push_back(value(checkpoint));
+    }
+    plot.series.push_back(run.series(method, x, y));
+  }
+  return plot;
+}
+
+// [FMM13, Fig. 9], and what it does not see.
+void plot_errors(const PaperRun& run, const Body& ball, const Body& pair, ExperimentReport& report) {
+  const auto back = [](const RideCheckpoint& at) { return at.errors.back.mean; };
+  const auto path = [](const RideCheckpoint& at) { return at.errors.path; };
+  PlotSheet sheet;
+  sheet.title = "Error by revolutions, no fairing";
+  sheet.plots = {error_plot(run, ball, Integrator::euler, "One particle, Euler", "return error", back),
+                 error_plot(run, ball, Integrator::rk4, "One particle, RK4", "return error", back),
+                 error_plot(run, pair, Integrator::rk4, "Two particles, RK4", "return error", back),
+                 error_plot(run, pair, Integrator::rk4, "Two particles, RK4", "path error", path)};
+  run.write_plot_sheet("circling", "Fig. 9: error by the number of revolutions", sheet, report);
+}
+
 // A row a method, a column a number of revolutions, as in Fig. 4.
 void draw(const PaperRun& run, const Body& body, const std::string& caption, ExperimentReport& report) {
   std::vector<std::string> methods{"total", "curvature"};
@@ -154,6 +187,7 @@ ExperimentReport circling_experiment(const PaperRun& run) {
                    total_drifts(ball, "One particle", Integrator::rk4, blind),
                    total_drifts(pair, "Two particles", Integrator::euler, kind),
                    total_drifts(pair, "Two particles", Integrator::rk4, kind), follows_the_turning(pair)};
+  plot_errors(run, ball, pair, report);
   draw(run, ball, "Figs. 4 and 8: one particle, Euler's method", report);
   draw(run, pair, "The same with a body of two particles, Euler's method", report);
   return report;

@@ -67,6 +67,26 @@ Claim judge(const PaperRun& run, const Case& what, const std::vector<Ride>& ride
           "Where the method's own velocity is wrong, no time step makes the error smaller."};
 }
 
+Plot error_plot(const Case& what, const std::vector<Ride>& rides) {
+  Plot plot;
+  plot.title = fmt::format("{}, {}", what.scene, what.method);
+  plot.x_label = "steps a revolution";
+  plot.y_label = "path error (sigma)";
+  plot.log_x = plot.log_y = true;
+  plot.note = fmt::format("errors below {} are those of the projection", short_number(kFloor));
+  for (const auto& [integrator, order] : kIntegrators) {
+    Series series;
+    series.name = fmt::format("{} (order {:g})", integrator_name(integrator), order);
+    for (const Ride& ride : rides) {
+      if (ride.settings.integrator != integrator) continue;
+      series.x.push_back(ride.settings.steps_per_period);
+      series.y.push_back(error_of(ride, what));
+    }
+    plot.series.push_back(series);
+  }
+  return plot;
+}
+
 }  // namespace
 
 ExperimentReport convergence_experiment(const PaperRun& run) {
@@ -77,6 +97,10 @@ ExperimentReport convergence_experiment(const PaperRun& run) {
       "the motion without spin for the ball and the rotation for the rings. The order is fitted over errors above {}.",
       short_number(kFloor));
   ResultTable rides_table = ride_table(), table;
+  PlotSheet sheet;
+  sheet.title = "Order of convergence";
+  sheet.columns = 3;
+  sheet.panel_width = 380;
   table.columns = {"scene", "method", "integrator"};
   for (const int steps : step_counts(run)) table.columns.push_back(fmt::format("{} steps", steps));
   table.columns.emplace_back("order");
@@ -85,8 +109,10 @@ ExperimentReport convergence_experiment(const PaperRun& run) {
     const std::vector<Ride> rides = measure(run, what, scene);
     for (const Ride& ride : rides) add_ride_end(rides_table, scene, ride, what.without_spin);
     report.claims.push_back(judge(run, what, rides, table));
+    sheet.plots.push_back(error_plot(what, rides));
   }
   run.write_csv("convergence", rides_table, report);
+  run.write_plot_sheet("convergence", "Path error by steps a revolution", sheet, report);
   report.tables.emplace_back("Path error (sigma) by steps a revolution", table);
   return report;
 }

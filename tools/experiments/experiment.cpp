@@ -1,6 +1,7 @@
 #include "tools/experiments/experiment.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "scenes/scene_file.h"
 #include "tools/io/atomic_file.h"
@@ -40,6 +41,18 @@ scenes::Scene PaperRun::scene(const std::string& name) const {
 void PaperRun::write_csv(const std::string& name, const ResultTable& table, ExperimentReport& report) const {
   write_file(out / (name + ".csv"), table.csv());
   report.files.push_back(name + ".csv");
+}
+
+Series PaperRun::series(const std::string& method, std::vector<double> x, std::vector<double> y) const {
+  const auto place = std::find(methods.begin(), methods.end(), method) - methods.begin();
+  return {method, std::move(x), std::move(y), int(place)};
+}
+
+void PaperRun::write_plot_sheet(const std::string& name, const std::string& caption, const PlotSheet& sheet,
+                                ExperimentReport& report) const {
+  write_plots(sheet, out / name);
+  report.pictures.emplace_back(caption, name + ".png");
+  report.files.push_back(name + ".svg");
 }
 
 std::vector<std::string> compared_methods() {

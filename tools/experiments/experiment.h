@@ -7,7 +7,7 @@
 
 #include "scenes/scene.h"
 #include "tools/experiments/result_table.h"
-#include "tools/report/run_log.h"
+#include "tools/report/plot.h"
 
 namespace flowskin::tools {
 
@@ -47,6 +47,11 @@ struct PaperRun {
 
   /// @throws scenes::SceneError where the file is missing or wrong.
   scenes::Scene scene(const std::string& name) const;
+  /// A line of a plot; each method has the same style in all plots.
+  Series series(const std::string& method, std::vector<double> x, std::vector<double> y) const;
+  /// Writes `name`.svg and `name`.png and shows them in the report. @throws RunError
+  void write_plot_sheet(const std::string& name, const std::string& caption, const PlotSheet& sheet,
+                        ExperimentReport& report) const;
   /// Writes `name`.csv and lists it in the report. @throws RunError
   void write_csv(const std::string& name, const ResultTable& table, ExperimentReport& report) const;
 };

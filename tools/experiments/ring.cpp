@@ -141,6 +141,44 @@ void add_tables(const PaperRun& run, const std::vector<Ring>& rings, ExperimentR
   }
 }
 
+Plot error_plot(const PaperRun& run, const Ring& ring, const std::string& measure, double (*value)(const RideErrors&)) {
+  Plot plot;
+  plot.title = ring.name + " overlap";
+  plot.x_label = "fairing iterations";
+  plot.y_label = measure + " (sigma)";
+  plot.log_y = true;
+  for (const std::string& method : run.methods) {
+    std::vector<double> x, y;
+    for (const int iterations : iteration_counts(run)) {
+      x.push_back(iterations);
+      y.push_back(value(ring.errors(method, iterations)));
+    }
+    plot.series.push_back(run.series(method, x, y));
+  }
+  return plot;
+}
+
+void plot_errors(const PaperRun& run, const std::vector<Ring>& rings, ExperimentReport& report) {
+  PlotSheet sheet;
+  sheet.title = "Three particles on a circle, error by fairing iterations";
+  sheet.columns = int(rings.size());
+  sheet.panel_width = 380;
+  for (const Ring& ring : rings) sheet.plots.push_back(error_plot(run, ring, "return error", return_error));
+  for (const Ring& ring : rings) sheet.plots.push_back(error_plot(run, ring, "path error", path_error));
+  run.write_plot_sheet("ring", "Fig. 7: error by the number of fairing iterations", sheet, report);
+
+  Plot bars;
+  bars.title = "Relative velocity error, 10 fairing iterations";
+  bars.y_label = "RMS |v - v_true| / RMS |v_true|";
+  for (const Ring& ring : rings) bars.categories.push_back(ring.name + " overlap");
+  for (const std::string& method : run.methods) {
+    std::vector<double> heights;
+    for (const Ring& ring : rings) heights.push_back(velocity_error(ring.errors(method)));
+    bars.series.push_back(run.series(method, {}, heights));
+  }
+  run.write_plot_sheet("ring_velocity", "Relative velocity error by overlap", {"", {bars}, 1, 640, 320}, report);
+}
+
 void draw(const PaperRun& run, const Ring& ring, ExperimentReport& report) {
   std::vector<Ride> shown;
   for (const std::string& method : {std::string("normal"), std::string("total"), std::string("curvature"), run.best})
@@ -180,6 +218,7 @@ ExperimentReport ring_experiment(const PaperRun& run) {
                    better_at_few(run, rings, "return error", return_error),
                    better_at_few(run, rings, "path error", path_error),
                    order_of_methods(rings)};
+  plot_errors(run, rings, report);
   for (const Ring& ring : rings) draw(run, ring, report);
   return report;
 }

@@ -7,6 +7,7 @@
 
 #include "scenes/sources/make_source.h"
 #include "tools/errors.h"
+#include "tools/experiments/error_measures.h"
 #include "tools/experiments/experiment.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/pipeline/picture_maker.h"
@@ -27,7 +28,7 @@ struct Walker {
   std::string method;
   tracking::Tracker tracker;
   int reextractions = 0;
-  double drift_sum = 0;  // over all frames, of the median drift (m)
+  std::vector<double> drifts;  // median of each frame (spacings)
   double largest_distance = 0;
   std::vector<Image> pictures;
 };
@@ -53,7 +54,7 @@ class StairsRun {
     for (const std::string& method : methods()) {
       tracking::TrackerSettings settings = tracker_settings(scene_);
       settings.velocity = method;
-      walkers_.push_back({method, tracking::Tracker(settings, to_particles(source_->state())), 0, 0, 0, {}});
+      walkers_.push_back({method, tracking::Tracker(settings, to_particles(source_->state())), 0, {}, 0, {}});
     }
   }
 
@@ -100,7 +101,7 @@ class StairsRun {
     const tracking::Particles particles = to_particles(source_->state());
     const tracking::MetaballField field(particles.positions, {}, walker.tracker.settings().field);
     const double drift = median(tracking::material_drift(walker.tracker.mesh(), field, particles));
-    walker.drift_sum += drift;
+    walker.drifts.push_back(drift / scene_.particles.spacing);
     walker.largest_distance = std::max(walker.largest_distance, walker.tracker.report().max_distance);
     table_.add({frame, source_->state().time, walker.method, int(walker.tracker.mesh().positions.size()), drift,
                 walker.tracker.report().components, walker.reextractions, walker.tracker.report().max_distance,
@@ -120,7 +121,9 @@ class StairsRun {
   }
   /// In spacings, averaged over the frames.
   double drift(const std::string& method) const {
-    return walker(method).drift_sum / std::max(1, scene_.frames) / scene_.particles.spacing;
+    Average average;
+    for (const double drift : walker(method).drifts) average.add(drift);
+    return average.mean();
   }
 
   const PaperRun& run_;
@@ -158,6 +161,17 @@ ExperimentReport StairsRun::report() const {
   report.tables.emplace_back("On the stairs", brief);
   write_png(run_.out / "stairs.png", contact_sheet(rows, labels, times_, kPictureWidth));
   report.pictures.emplace_back("Figs. 10 and 11: the surface by each method, and the particles", "stairs.png");
+
+  Plot plot;
+  plot.title = "Drift of the texture from the particles beneath";
+  plot.x_label = "time (s)";
+  plot.y_label = "median drift (spacings)";
+  for (const Walker& w : walkers_) {
+    std::vector<double> x;
+    for (int frame = 1; frame <= int(w.drifts.size()); ++frame) x.push_back(frame / scene_.frame_rate);
+    plot.series.push_back(run_.series(w.method, x, w.drifts));
+  }
+  run_.write_plot_sheet("stairs_drift", "Drift of the texture on the stairs", {"", {plot}, 1, 640, 340}, report);
 
   report.claims.push_back(
       {"Fig. 10", "Curvature invariance captures the surface movement better than the total velocity.",

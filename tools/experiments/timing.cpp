@@ -76,6 +76,20 @@ StepTime time_steps(const scenes::Scene& scene, const tracking::SurfaceMesh& sta
   return {int(positions.size()), median(velocity), median(projecting), median(fairing)};
 }
 
+Plot bars(const PaperRun& run, const std::vector<StepTime>& times) {
+  Plot plot;
+  plot.title = fmt::format("{} vertices", times.front().vertices);
+  plot.y_label = "ms";
+  plot.categories = run.methods;
+  plot.series = {{"velocity", {}, {}}, {"projection", {}, {}}, {"10 fairing iterations", {}, {}}};
+  for (const StepTime& time : times) {
+    plot.series[0].y.push_back(time.velocity);
+    plot.series[1].y.push_back(time.projection);
+    plot.series[2].y.push_back(time.fairing);
+  }
+  return plot;
+}
+
 Claim curvature_costs_more(const StepTime& total, const StepTime& curvature) {
   return {
       "Sec. 4",
@@ -119,19 +133,26 @@ ExperimentReport timing_experiment(const PaperRun& run) {
                    "with fairing (ms)"};
   const std::vector<double> edges = run.quick ? std::vector<double>{0.3} : std::vector<double>{0.3, 0.15, 0.075};
   StepTime total, curvature;
+  PlotSheet sheet;
+  sheet.title = "Milliseconds a step, one thread";
+  sheet.columns = int(edges.size());
   for (const double edge : edges) {
     scenes::Scene scene = run.scene("ring_weak");
     scene.tracking.edge_length = edge;
     const tracking::SurfaceMesh start = start_mesh(scene);
+    std::vector<StepTime> times;
     for (const std::string& method : run.methods) {
       const StepTime time = time_steps(scene, start, method, run.quick ? 3 : 60);
       table.add({time.vertices, method, time.velocity, time.projection, time.fairing, time.without_fairing(),
                  time.with_fairing()});
+      times.push_back(time);
       if (method == "total") total = time;
       if (method == "curvature") curvature = time;
     }
+    sheet.plots.push_back(bars(run, times));
   }
   run.write_csv("timing", table, report);
+  run.write_plot_sheet("timing", "Milliseconds a step by mesh size", sheet, report);
   report.tables.emplace_back("Milliseconds a step", table);
   report.claims = {curvature_costs_more(total, curvature), solving_dominates(total, curvature)};
   return report;

@@ -74,6 +74,14 @@ ExperimentReport translation_experiment(const PaperRun& run) {
                ride.last().errors.velocity_error, ride.last().strain});
   report.tables.emplace_back("At the end of the motion", brief);
 
+  Plot bars;
+  bars.title = "Errors at the end";
+  bars.categories = {"mean error (sigma)", "largest error (sigma)", "RMS edge strain"};
+  for (const Ride& ride : rides)
+    bars.series.push_back(run.series(ride.settings.velocity, {},
+                                     {ride.last().errors.end.mean, ride.last().errors.end.max, ride.last().strain}));
+  run.write_plot_sheet("translation_errors", "Errors at the end of the translation", {"", {bars}, 1, 640, 320}, report);
+
   std::vector<Ride> shown{normal, total, curvature};
   if (run.best != "curvature") shown.push_back(ride_of(rides, run.best));
   write_png(run.out / "translation.png", ride_sheet(scene, start, shown, 0.5));
