@@ -152,6 +152,45 @@ Jet MetaballField::jet(const Vec3& x) const {
   return jet;
 }
 
+KernelMoments MetaballField::moments(const Vec3& x) const {
+  const Lanes zero{};
+  std::array<Lanes, 3> gradient{};
+  std::array<Lanes, 6> u2_ee{}, u_ee{};
+  std::array<Lanes, 10> u_eee{};
+  std::array<Lanes, 15> eeee{};
+  impl_->for_each_group(x, [&](const ParticleGroup&, const Lanes& ex, const Lanes& ey, const Lanes& ez, const Lanes& u,
+                               const LaneMask& inside) {
+    if (!any_lane(inside)) return;
+    const std::array<Lanes, 3> e = {inside ? ex : zero, inside ? ey : zero, inside ? ez : zero};
+    const Lanes u_in = inside ? u : zero;
+    // In lexicographic order of ascending indices.
+    std::size_t second = 0, third = 0, fourth = 0;
+    for (int a = 0; a < 3; ++a) {
+      gradient[a] += u_in * u_in * e[a];
+      for (int b = a; b < 3; ++b) {
+        const Lanes ee = e[a] * e[b];
+        const Lanes uee = u_in * ee;
+        u_ee[second] += uee;
+        u2_ee[second++] += u_in * uee;
+        for (int c = b; c < 3; ++c) {
+          u_eee[third++] += uee * e[c];
+          for (int d = c; d < 3; ++d) eeee[fourth++] += ee * e[c] * e[d];
+        }
+      }
+    }
+  });
+  KernelMoments moments;
+  const auto sum = [](const auto& lanes, auto& sums) {
+    for (std::size_t i = 0; i < lanes.size(); ++i) sums[i] = lane_sum(lanes[i]);
+  };
+  sum(u2_ee, moments.u2_ee);
+  sum(u_ee, moments.u_ee);
+  sum(u_eee, moments.u_eee);
+  sum(eeee, moments.eeee);
+  for (int a = 0; a < 3; ++a) moments.gradient[a] = -6 * lane_sum(gradient[a]);
+  return moments;
+}
+
 const FieldSettings& MetaballField::settings() const { return impl_->settings; }
 const std::vector<Vec3>& MetaballField::positions() const { return impl_->positions; }
 const std::vector<Vec3>& MetaballField::velocities() const { return impl_->velocities; }

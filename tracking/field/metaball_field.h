@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tracking/field/jet.h"
+#include "tracking/field/kernel_moments.h"
 #include "tracking/particles.h"
 
 namespace flowskin::tracking {
@@ -35,6 +36,8 @@ class MetaballField {
   double value(const Vec3& x, Vec3& gradient) const;
   /// All derivatives, in one pass over the neighbours.
   Jet jet(const Vec3& x) const;
+  /// What tells how the field changes when its particles are strained.
+  KernelMoments moments(const Vec3& x) const;
 
   const FieldSettings& settings() const;
   const std::vector<Vec3>& positions() const;

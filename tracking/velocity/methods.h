@@ -9,5 +9,10 @@ VelocityMethodInfo normal_velocity_info();
 VelocityMethodInfo total_velocity_info();
 VelocityMethodInfo curvature_velocity_info();
 VelocityMethodInfo curvature_belyaev_velocity_info();
+VelocityMethodInfo rigid_velocity_info();
+VelocityMethodInfo rigid_global_velocity_info();
+VelocityMethodInfo affine_velocity_info();
+VelocityMethodInfo simulation_velocity_info();
+VelocityMethodInfo hybrid_velocity_info();
 
 }  // namespace flowskin::tracking

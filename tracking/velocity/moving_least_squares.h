@@ -9,9 +9,10 @@ namespace flowskin::tracking {
 struct LocalFlow {
   Vec3 velocity = Vec3::Zero();  ///< At x (m/s).
   Mat3 gradient = Mat3::Zero();  ///< gradient(i, j) = dv_i / dx_j (1/s)
-  double misfit = 0;     ///< Root of sum w |v_i - fit|^2 / sum w |v_i|^2: what the flow leaves unexplained, 0 to 1.
-  int neighbors = 0;     ///< Particles nearer than the effective radius.
-  bool defined = false;  ///< There are such particles; else all of the above is zero.
+  double misfit = 0;             ///< Share of the velocities' spread that the linear flow leaves unexplained, 0 to 1:
+                                 ///< root of sum w |v_i - fit|^2 / sum w |v_i - mean|^2. Zero where all are the same.
+  int neighbors = 0;             ///< Particles nearer than the effective radius.
+  bool defined = false;          ///< There are such particles; else all of the above is zero.
 };
 
 /// Moving least squares of first order [Lancaster and Salkauskas 1981] over the particles nearer than the effective

@@ -15,6 +15,11 @@ const std::vector<VelocityMethodInfo>& velocity_methods() {
              total_velocity_info,
              curvature_velocity_info,
              curvature_belyaev_velocity_info,
+             rigid_velocity_info,
+             rigid_global_velocity_info,
+             affine_velocity_info,
+             simulation_velocity_info,
+             hybrid_velocity_info,
          }) {
       all.push_back(info());
     }

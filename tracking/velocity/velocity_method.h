@@ -27,7 +27,7 @@ struct VelocityMethodInfo {
   std::unique_ptr<VelocityMethod> (*create)();
 };
 
-/// All methods, in the order of presentation: normal, total, curvature, curvature-belyaev.
+/// All methods, in the order of presentation.
 const std::vector<VelocityMethodInfo>& velocity_methods();
 
 /// @throws std::invalid_argument naming the valid methods, where there is none of this name.

@@ -1,0 +1,71 @@
+// The particles' own flow, corrected by the field's equations where the particles contradict each other.
+#include <Eigen/Cholesky>
+
+#include "tracking/velocity/methods.h"
+#include "tracking/velocity/motion_rows.h"
+#include "tracking/velocity/moving_least_squares.h"
+#include "tracking/velocity/particle_velocities.h"
+
+namespace flowskin::tracking {
+namespace {
+
+// Chosen by measurement, see docs/velocity_methods.md.
+constexpr RowWeights row_weights{1, 1, 1};
+constexpr double flow_weight = 30;     // of the particles' flow, for a misfit of 1; it grows as 1 / misfit^2
+constexpr double least_misfit = 3e-5;  // squares of smaller misfits are rounding
+constexpr int flow_unknowns = 4;       // particles needed for a linear flow
+
+using Motion = Eigen::Matrix<double, 12, 1>;
+
+Motion motion_of(const LocalFlow& flow, double radius) {
+  Motion motion;
+  motion << flow.velocity / radius, flow.gradient.reshaped();
+  return motion;
+}
+
+/// As few particles are always met by a linear flow, their misfit is taken for what more of them would show.
+double expected_misfit2(const LocalFlow& flow) {
+  if (flow.neighbors <= flow_unknowns) return 1;
+  const double n = flow.neighbors;
+  return flow.misfit * flow.misfit * n / (n - flow_unknowns) + least_misfit * least_misfit;
+}
+
+/// Least squares of the field's ten rows and of the distance to the particles' flow.
+Vec3 hybrid_velocity(const MetaballField& field, const Vec3& x) {
+  const double radius = field.settings().radius;
+  const LocalFlow flow = local_flow(field, x);
+  const SurfacePoint point(field.jet(x), field.settings());
+  if (!point.defined || !flow.defined) return flow.velocity;
+  const auto rows = affine_rows(point, field.moments(x), row_weights);
+  const double weight = flow_weight / expected_misfit2(flow);
+  // In the change of the particles' flow: exact where the field agrees with it.
+  const Motion start = motion_of(flow, radius);
+  Eigen::Matrix<double, 12, 12> normal = rows.matrix.transpose() * rows.matrix;
+  normal.diagonal().array() += weight;
+  const Motion right = rows.matrix.transpose() * (rows.right_side - rows.matrix * start);
+  const Vec3 change = radius * normal.llt().solve(right).head<3>();
+  return change.allFinite() ? Vec3(flow.velocity + change) : flow.velocity;
+}
+
+class HybridVelocity final : public VelocityMethod {
+ public:
+  void evaluate(const MetaballField& field, const MeshTopology& /*topology*/, const std::vector<Vec3>& positions,
+                std::vector<Vec3>& velocities) const override {
+    require_particle_velocities(field, "hybrid");
+    velocities.resize(positions.size());
+    const auto count = static_cast<std::ptrdiff_t>(positions.size());
+#pragma omp parallel for schedule(dynamic, 64)
+    for (std::ptrdiff_t i = 0; i < count; ++i) velocities[i] = hybrid_velocity(field, positions[i]);
+  }
+};
+
+}  // namespace
+
+VelocityMethodInfo hybrid_velocity_info() {
+  return {"hybrid",
+          "The particles' own velocity, corrected by the field where the particles contradict each other: the best in "
+          "a simulation.",
+          []() -> std::unique_ptr<VelocityMethod> { return std::make_unique<HybridVelocity>(); }};
+}
+
+}  // namespace flowskin::tracking

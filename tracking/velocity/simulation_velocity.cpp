@@ -1,0 +1,39 @@
+// The particles' own velocity by moving least squares; the surface is met by the field's normal velocity.
+#include "tracking/velocity/methods.h"
+#include "tracking/velocity/moving_least_squares.h"
+#include "tracking/velocity/particle_velocities.h"
+#include "tracking/velocity/surface_point.h"
+
+namespace flowskin::tracking {
+namespace {
+
+class SimulationVelocity final : public VelocityMethod {
+ public:
+  void evaluate(const MetaballField& field, const MeshTopology& /*topology*/, const std::vector<Vec3>& positions,
+                std::vector<Vec3>& velocities) const override {
+    require_particle_velocities(field, "simulation");
+    velocities.resize(positions.size());
+    const auto count = static_cast<std::ptrdiff_t>(positions.size());
+#pragma omp parallel for schedule(dynamic, 64)
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const SurfacePoint point(field.jet(positions[i]), field.settings());
+      const Vec3 v = local_flow(field, positions[i]).velocity;
+      velocities[i] = point.defined ? meeting_surface(point, v, field.settings().radius) : Vec3(Vec3::Zero());
+    }
+  }
+
+ private:
+  static Vec3 meeting_surface(const SurfacePoint& point, const Vec3& v, double radius) {
+    const Vec3 result = v + radius * point.normal_velocity - point.normal * point.normal.dot(v);
+    return result.allFinite() ? result : Vec3(Vec3::Zero());
+  }
+};
+
+}  // namespace
+
+VelocityMethodInfo simulation_velocity_info() {
+  return {"simulation", "The particles' own velocity, by moving least squares: exact for every linear flow.",
+          []() -> std::unique_ptr<VelocityMethod> { return std::make_unique<SimulationVelocity>(); }};
+}
+
+}  // namespace flowskin::tracking
