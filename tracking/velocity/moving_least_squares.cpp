@@ -11,12 +11,9 @@ namespace {
 /// Eigenvalue of the covariance (squared radii) below which the particles count as not spread along its direction.
 constexpr double least_spread = 1e-3;
 
-<<<<<<< HEAD
-=======
 /// Square of the share of the speed below which differences of velocity are rounding.
 constexpr double least_spread_of_speed = 1e-20;
 
->>>>>>> main
 /// A particle near the point: lengths in effective radii, from the point.
 struct Sample {
   double weight;
@@ -45,13 +42,8 @@ Mat3 damped_inverse(const Mat3& covariance) {
   Vec3 inverse;
   for (int k = 0; k < 3; ++k) {
     const double ratio = std::max(0.0, solver.eigenvalues()[k] / least_spread);
-<<<<<<< HEAD
-    const double ratio2 = ratio * ratio, ratio4 = ratio2 * ratio2;
-    inverse[k] = ratio4 * ratio2 * ratio / (1 + ratio4 * ratio4) / least_spread;
-=======
     const double power = std::pow(ratio, 15);
     inverse[k] = power / (1 + power * ratio) / least_spread;
->>>>>>> main
   }
   return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
 }
@@ -88,14 +80,6 @@ LocalFlow local_flow(const MetaballField& field, const Vec3& x) {
   flow.velocity = mean - gradient * center;
   flow.gradient = gradient / field.settings().radius;
 
-<<<<<<< HEAD
-  double rest = 0, all = 0;
-  for (const Sample& sample : samples) {
-    rest += sample.weight * (sample.velocity - mean - gradient * sample.offset).squaredNorm();
-    all += sample.weight * sample.velocity.squaredNorm();
-  }
-  if (all > 0) flow.misfit = std::min(1.0, std::sqrt(rest / all));
-=======
   double rest = 0, spread = 0, all = 0;
   for (const Sample& sample : samples) {
     rest += sample.weight * (sample.velocity - mean - gradient * sample.offset).squaredNorm();
@@ -104,7 +88,6 @@ LocalFlow local_flow(const MetaballField& field, const Vec3& x) {
   }
   // Velocities that differ by rounding alone have no spread.
   if (spread > least_spread_of_speed * all) flow.misfit = std::min(1.0, std::sqrt(rest / spread));
->>>>>>> main
   return flow;
 }
 
