@@ -14,6 +14,8 @@ namespace {
 // The method shown as the best one, by preference: the first that is registered. Set it here.
 constexpr const char* kBestMethods[] = {"rigid-global", "curvature"};
 
+constexpr int kQuickWidth = 160;  // pixels
+
 }  // namespace
 
 std::string verdict_name(Verdict verdict) {
@@ -35,7 +37,14 @@ Verdict verdict_of(const std::vector<bool>& holds) {
 }
 
 scenes::Scene PaperRun::scene(const std::string& name) const {
-  return scenes::read_scene(scenes / (name + ".json"), scene_vocabulary());
+  scenes::Scene scene = scenes::read_scene(scenes / (name + ".json"), scene_vocabulary());
+  if (quick) {
+    scene.render.height = scene.render.height * kQuickWidth / scene.render.width;
+    scene.render.width = kQuickWidth;
+    scene.render.samples = 1;
+    scene.tracking.edge_length *= 2;
+  }
+  return scene;
 }
 
 void PaperRun::write_csv(const std::string& name, const ResultTable& table, ExperimentReport& report) const {

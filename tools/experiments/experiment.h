@@ -45,6 +45,7 @@ struct PaperRun {
   std::vector<std::string> methods;  ///< Velocity methods compared, in the order of the registry.
   std::string best;                  ///< The one shown beside the paper's.
 
+  /// With a coarser mesh and small pictures where the run is quick.
   /// @throws scenes::SceneError where the file is missing or wrong.
   scenes::Scene scene(const std::string& name) const;
   /// A line of a plot; each method has the same style in all plots.
@@ -64,6 +65,7 @@ std::string best_method();
 ExperimentReport translation_experiment(const PaperRun& run);  ///< Fig. 2
 ExperimentReport circling_experiment(const PaperRun& run);     ///< Figs. 4, 8, 9
 ExperimentReport ring_experiment(const PaperRun& run);         ///< Figs. 6, 7
+ExperimentReport targets_experiment(const PaperRun& run);      ///< What this project promises on the ring.
 ExperimentReport convergence_experiment(const PaperRun& run);  ///< Step counts and order.
 ExperimentReport timing_experiment(const PaperRun& run);       ///< Milliseconds a step.
 ExperimentReport stairs_experiment(const PaperRun& run);       ///< Figs. 10, 11

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/pipeline/picture_maker.h"
 #include "tools/render/camera.h"
 #include "tools/render/color.h"
 #include "tools/render/renderer.h"
 #include "tools/textures/texture_mapping.h"
 #include "tracking/mesh/mesh_measures.h"
-#include "tracking/mesh/topology.h"
 
 namespace flowskin::tools {
 namespace {
@@ -73,17 +71,6 @@ void draw_wire(const scenes::CameraSpec& spec, const tracking::SurfaceMesh& mesh
   wire.draw_on(image);
 }
 
-SurfaceFrame dressed(const scenes::Scene& scene, const tracking::SurfaceMesh& mesh) {
-  return dress(mesh, 0, scene.texture, rest_frame(mesh.rest_positions));
-}
-
-Image picture(const scenes::Scene& scene, const SurfaceFrame& frame) {
-  const Image texture = make_texture(scene.texture.image, scene.directory);
-  Image image = Renderer(scene.render, scene.boundaries, texture, bounds(frame.mesh.positions)).draw(frame);
-  draw_wire(scene.render.camera, frame.mesh, image);
-  return image;
-}
-
 Color error_color(double share) {
   static const Vec3f low = to_linear({45, 96, 180}), middle = to_linear({236, 236, 232}),
                      high = to_linear({190, 36, 30});
@@ -93,17 +80,40 @@ Color error_color(double share) {
 
 }  // namespace
 
-Image textured_picture(const scenes::Scene& scene, const tracking::SurfaceMesh& mesh) {
-  return picture(scene, dressed(scene, mesh));
+struct MeshPainter::Impl {
+  explicit Impl(const scenes::Scene& painted)
+      : scene(painted),
+        textured(painted.render, painted.boundaries, make_texture(painted.texture.image, painted.directory), {}),
+        solid(solid_settings(painted), painted.boundaries, Image{}, {}) {}
+
+  static scenes::RenderSpec solid_settings(const scenes::Scene& scene) {
+    scenes::RenderSpec settings = scene.render;
+    settings.style = "solid";
+    return settings;
+  }
+  SurfaceFrame dressed(const tracking::SurfaceMesh& mesh) const {
+    return dress(mesh, 0, scene.texture, rest_frame(mesh.rest_positions));
+  }
+  Image with_wire(Image image, const tracking::SurfaceMesh& mesh) const {
+    draw_wire(scene.render.camera, mesh, image);
+    return image;
+  }
+
+  scenes::Scene scene;
+  Renderer textured, solid;
+};
+
+MeshPainter::MeshPainter(const scenes::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+MeshPainter::~MeshPainter() = default;
+
+Image MeshPainter::textured(const tracking::SurfaceMesh& mesh) const {
+  return impl_->with_wire(impl_->textured.draw(impl_->dressed(mesh)), mesh);
 }
 
-Image error_picture(const scenes::Scene& scene, const tracking::SurfaceMesh& mesh, const std::vector<double>& errors,
-                    double largest) {
-  scenes::Scene colored = scene;
-  colored.render.style = "solid";
-  SurfaceFrame frame = dressed(colored, mesh);
+Image MeshPainter::colored(const tracking::SurfaceMesh& mesh, const std::vector<double>& errors, double largest) const {
+  SurfaceFrame frame = impl_->dressed(mesh);
   for (std::size_t v = 0; v < errors.size(); ++v) frame.colors[v] = error_color(errors[v] / largest);
-  return picture(colored, frame);
+  return impl_->with_wire(impl_->solid.draw(frame), mesh);
 }
 
 }  // namespace flowskin::tools

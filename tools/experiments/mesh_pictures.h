@@ -1,6 +1,7 @@
 // Pictures of carried meshes: textured or coloured by error, with the mesh's edges drawn on top.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -9,12 +10,20 @@
 
 namespace flowskin::tools {
 
-/// The mesh with the scene's texture, camera and size, and its edges as thin dark lines.
-/// `mesh.rest_positions` say where the texture was fixed at the start.
-Image textured_picture(const scenes::Scene& scene, const tracking::SurfaceMesh& mesh);
+/// Draws meshes of one scene, whose camera must have a position.
+class MeshPainter {
+ public:
+  explicit MeshPainter(const scenes::Scene& scene);
+  ~MeshPainter();
 
-/// The same coloured by `errors` (one a vertex): from blue (0) over white to red (`largest` and more).
-Image error_picture(const scenes::Scene& scene, const tracking::SurfaceMesh& mesh, const std::vector<double>& errors,
-                    double largest);
+  /// With the scene's texture. `mesh.rest_positions` say where the texture was fixed at the start.
+  Image textured(const tracking::SurfaceMesh& mesh) const;
+  /// Coloured by `errors` (one a vertex): from blue (0) over white to red (`largest` and more).
+  Image colored(const tracking::SurfaceMesh& mesh, const std::vector<double>& errors, double largest) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace flowskin::tools

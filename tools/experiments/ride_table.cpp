@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "tools/experiments/mesh_pictures.h"
@@ -10,7 +11,7 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr int kSheetPictureWidth = 400;  // pixels
+constexpr int kSheetPictureWidth = 380;  // pixels
 
 void add_checkpoint(ResultTable& table, const scenes::Scene& scene, const Ride& ride, const RideCheckpoint& at,
                     bool without_spin) {
@@ -65,8 +66,9 @@ Image ride_sheet(const scenes::Scene& scene, const tracking::SurfaceMesh& start,
   const double unit = motion.field_settings().radius;
   std::vector<std::vector<Image>> rows(2);
   std::vector<std::string> labels{"start"};
-  rows[0].push_back(textured_picture(scene, start));
-  rows[1].push_back(error_picture(scene, start, std::vector<double>(start.positions.size(), 0.0), largest));
+  const MeshPainter painter(scene);
+  rows[0].push_back(painter.textured(start));
+  rows[1].push_back(painter.colored(start, std::vector<double>(start.positions.size(), 0.0), largest));
   for (const Ride& ride : rides) {
     const RideCheckpoint& end = ride.last();
     tracking::SurfaceMesh mesh = start;
@@ -75,11 +77,12 @@ Image ride_sheet(const scenes::Scene& scene, const tracking::SurfaceMesh& start,
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
       errors.push_back((mesh.positions[v] - motion.position(start.positions[v], end.period * motion.period())).norm() /
                        unit);
-    rows[0].push_back(textured_picture(scene, mesh));
-    rows[1].push_back(error_picture(scene, mesh, errors, largest));
+    rows[0].push_back(painter.textured(mesh));
+    rows[1].push_back(painter.colored(mesh, errors, largest));
     labels.push_back(ride.settings.velocity);
   }
-  return contact_sheet(rows, {"texture", fmt::format("error 0 to {:g} sigma", largest)}, labels, kSheetPictureWidth);
+  return contact_sheet(rows, {"texture", fmt::format("error 0 to {:g} sigma", largest)}, labels,
+                       std::min(kSheetPictureWidth, scene.render.width));
 }
 
 }  // namespace flowskin::tools

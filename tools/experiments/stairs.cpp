@@ -71,7 +71,7 @@ class StairsRun {
  private:
   static scenes::Scene scene_of(const PaperRun& run) {
     scenes::Scene scene = run.scene("stairs");
-    if (run.quick) scene.frames = 4, scene.render.width = 160, scene.render.height = 90;
+    if (run.quick) scene.frames = 4, scene.tracking.edge_length /= 2;
     return scene;
   }
 
@@ -159,7 +159,7 @@ ExperimentReport StairsRun::report() const {
   rows.push_back(particle_pictures_);
   labels.emplace_back("particles");
   report.tables.emplace_back("On the stairs", brief);
-  write_png(run_.out / "stairs.png", contact_sheet(rows, labels, times_, kPictureWidth));
+  write_png(run_.out / "stairs.png", contact_sheet(rows, labels, times_, std::min(kPictureWidth, scene_.render.width)));
   report.pictures.emplace_back("Figs. 10 and 11: the surface by each method, and the particles", "stairs.png");
 
   Plot plot;
