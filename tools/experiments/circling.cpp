@@ -130,11 +130,12 @@ void plot_errors(const PaperRun& run, const Body& ball, const Body& pair, Experi
 }
 
 // A row a method, a column a number of revolutions, as in Fig. 4.
-void draw(const PaperRun& run, const Body& body, const std::string& caption, ExperimentReport& report) {
+void draw(const PaperRun& run, const Body& body, Integrator integrator, const std::string& caption,
+          ExperimentReport& report) {
   std::vector<std::string> methods{"total", "curvature"};
   if (run.best != "curvature") methods.push_back(run.best);
   const int last = body.rides.front().last().period;
-  const MeshPainter painter(body.scene);
+  const MeshPainter painter(body.scene, body.start);
   std::vector<std::vector<Image>> rows;
   std::vector<std::string> columns{"start"};
   for (const int share : {1, 2, 3}) columns.push_back(fmt::format("{} revolutions", last * share / 3));
@@ -143,7 +144,7 @@ void draw(const PaperRun& run, const Body& body, const std::string& caption, Exp
     tracking::SurfaceMesh mesh = body.start;
     row.push_back(painter.textured(mesh));
     for (const int share : {1, 2, 3}) {
-      mesh.positions = body.ride(method, Integrator::euler).checkpoints[std::size_t(last * share / 3 - 1)].positions;
+      mesh.positions = body.ride(method, integrator).checkpoints[std::size_t(last * share / 3 - 1)].positions;
       row.push_back(painter.textured(mesh));
     }
   }
@@ -191,8 +192,8 @@ ExperimentReport circling_experiment(const PaperRun& run) {
                    total_drifts(pair, "Two particles", Integrator::euler, kind),
                    total_drifts(pair, "Two particles", Integrator::rk4, kind), follows_the_turning(pair)};
   plot_errors(run, ball, pair, report);
-  draw(run, ball, "Figs. 4 and 8: one particle, Euler's method", report);
-  draw(run, pair, "The same with a body of two particles, Euler's method", report);
+  draw(run, ball, Integrator::euler, "Figs. 4 and 8: one particle, Euler's method", report);
+  draw(run, pair, Integrator::rk4, "The same with a body of two particles, RK4", report);
   return report;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/pipeline/picture_maker.h"
 #include "tools/render/camera.h"
 #include "tools/render/color.h"
 #include "tools/render/renderer.h"
@@ -81,10 +82,10 @@ Color error_color(double share) {
 }  // namespace
 
 struct MeshPainter::Impl {
-  explicit Impl(const scenes::Scene& painted)
+  Impl(const scenes::Scene& painted, const sph::Box& body)
       : scene(painted),
-        textured(painted.render, painted.boundaries, make_texture(painted.texture.image, painted.directory), {}),
-        solid(solid_settings(painted), painted.boundaries, Image{}, {}) {}
+        textured(painted.render, painted.boundaries, make_texture(painted.texture.image, painted.directory), body),
+        solid(solid_settings(painted), painted.boundaries, Image{}, body) {}
 
   static scenes::RenderSpec solid_settings(const scenes::Scene& scene) {
     scenes::RenderSpec settings = scene.render;
@@ -103,7 +104,8 @@ struct MeshPainter::Impl {
   Renderer textured, solid;
 };
 
-MeshPainter::MeshPainter(const scenes::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+MeshPainter::MeshPainter(const scenes::Scene& scene, const tracking::SurfaceMesh& start)
+    : impl_(std::make_unique<Impl>(scene, bounds(start.positions))) {}
 MeshPainter::~MeshPainter() = default;
 
 Image MeshPainter::textured(const tracking::SurfaceMesh& mesh) const {

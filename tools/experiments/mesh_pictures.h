@@ -13,7 +13,8 @@ namespace flowskin::tools {
 /// Draws meshes of one scene, whose camera must have a position.
 class MeshPainter {
  public:
-  explicit MeshPainter(const scenes::Scene& scene);
+  /// `start` says where the body is: light and ground are made for it.
+  MeshPainter(const scenes::Scene& scene, const tracking::SurfaceMesh& start);
   ~MeshPainter();
 
   /// With the scene's texture. `mesh.rest_positions` say where the texture was fixed at the start.

@@ -66,7 +66,7 @@ Image ride_sheet(const scenes::Scene& scene, const tracking::SurfaceMesh& start,
   const double unit = motion.field_settings().radius;
   std::vector<std::vector<Image>> rows(2);
   std::vector<std::string> labels{"start"};
-  const MeshPainter painter(scene);
+  const MeshPainter painter(scene, start);
   rows[0].push_back(painter.textured(start));
   rows[1].push_back(painter.colored(start, std::vector<double>(start.positions.size(), 0.0), largest));
   for (const Ride& ride : rides) {
