@@ -12,7 +12,7 @@ namespace {
 
 using tracking::Integrator;
 
-constexpr double kFloor = 3e-7;     // sigma: below, errors are those of the projection
+constexpr double kFloor = 3e-7;  // sigma: near the tolerance of the projection and below it, no order can be asked for
 constexpr double kTolerance = 0.3;  // of an order
 
 constexpr struct {
@@ -73,7 +73,7 @@ Plot error_plot(const Case& what, const std::vector<Ride>& rides) {
   plot.x_label = "steps a revolution";
   plot.y_label = "path error (sigma)";
   plot.log_x = plot.log_y = true;
-  plot.note = fmt::format("errors below {} are those of the projection", short_number(kFloor));
+  plot.note = fmt::format("orders are fitted to errors above {}", short_number(kFloor));
   for (const auto& [integrator, order] : kIntegrators) {
     Series series;
     series.name = fmt::format("{} (order {:g})", integrator_name(integrator), order);

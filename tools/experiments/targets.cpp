@@ -23,33 +23,50 @@ const std::vector<Target>& targets() {
   return all;
 }
 
-// The method and scene of a target, carried as far as any of its targets asks.
-Ride longest_ride(const PaperRun& run, const Target& target, const scenes::Scene& scene) {
-  RideSettings settings = ride_settings(scene);
-  settings.velocity = target.method;
-  settings.periods = 0;
+// The method and scene of a target, carried as far as any of its targets asks; and, for comparison, without fairing for
+// as long as the scene says.
+std::vector<Ride> rides_for(const PaperRun& run, const Target& target, const scenes::Scene& scene) {
+  RideSettings with = ride_settings(scene);
+  with.velocity = target.method;
+  RideSettings without = with;
+  without.fairing_iterations = 0;
   for (const Target& other : targets())
     if (other.scene == target.scene && other.method == target.method)
-      settings.periods = std::max(settings.periods, other.revolutions);
-  if (run.quick) settings.periods = 1;
-  return take_ride(scene, start_mesh(scene), settings);
+      with.periods = std::max(with.periods, other.revolutions);
+  if (run.quick) with.periods = without.periods = 1;
+  return take_rides(scene, start_mesh(scene), {with, without});
 }
 
-Claim judge(const Target& target, const Ride& ride) {
+Claim judge(const Target& target, const Ride& ride, const Ride& unfaired) {
   const int reached = std::min<int>(target.revolutions, ride.last().period);
-  const double error = ride.checkpoints[std::size_t(reached - 1)].errors.path;
+  const RideErrors& errors = ride.checkpoints[std::size_t(reached - 1)].errors;
+  const RideSettings& settings = ride.settings;
+  const bool holds = errors.path <= target.most && reached == target.revolutions;
+  std::string reason;
+  if (reached < target.revolutions) reason = "Not carried that far in the reduced version.";
+  if (!holds && unfaired.last().errors.path <= target.most)
+    reason += "Without fairing the target is met: what is left is the drift of the fairing, not of the velocity.";
   return {
       "target",
       fmt::format("{} on {}: path error after {} revolutions at most {} sigma ({} steps a revolution, {}, {} fairing "
                   "iterations).",
-                  target.method, target.scene, target.revolutions, short_number(target.most),
-                  ride.settings.steps_per_period, integrator_name(ride.settings.integrator),
-                  ride.settings.fairing_iterations),
-      fmt::format("{} sigma after {} revolution(s); return error {}, relative velocity error {}", short_number(error),
-                  reached, short_number(ride.checkpoints[std::size_t(reached - 1)].errors.back.mean),
-                  short_number(ride.checkpoints[std::size_t(reached - 1)].errors.velocity_error)),
-      verdict_of({error <= target.most && reached == target.revolutions}),
-      reached == target.revolutions ? "" : "Not carried that far in the reduced version."};
+                  target.method, target.scene, target.revolutions, short_number(target.most), settings.steps_per_period,
+                  integrator_name(settings.integrator), settings.fairing_iterations),
+      fmt::format("{} sigma after {} revolution(s); return error {}, relative velocity error {}; without fairing the "
+                  "path error is {} after {} revolution(s)",
+                  short_number(errors.path), reached, short_number(errors.back.mean),
+                  short_number(errors.velocity_error), short_number(unfaired.last().errors.path),
+                  unfaired.last().period),
+      verdict_of({holds}), reason};
+}
+
+Series path_errors(const std::string& name, const Ride& ride) {
+  Series series{name, {}, {}};
+  for (const RideCheckpoint& at : ride.checkpoints) {
+    series.x.push_back(at.period);
+    series.y.push_back(at.errors.path);
+  }
+  return series;
 }
 
 }  // namespace
@@ -63,29 +80,23 @@ ExperimentReport targets_experiment(const PaperRun& run) {
       "averaged over all vertices and steps.";
   ResultTable table = ride_table();
   Plot plot;
-  plot.title = "Path error with 10 fairing iterations";
+  plot.title = "Path error, 240 steps a revolution";
   plot.x_label = "revolutions";
   plot.y_label = "path error (sigma)";
   plot.log_y = true;
-  std::vector<Ride> rides;
-  std::vector<std::string> done;
+  std::vector<std::pair<std::string, std::vector<Ride>>> done;
   for (const Target& target : targets()) {
     if (std::find(run.methods.begin(), run.methods.end(), target.method) == run.methods.end()) continue;
     const std::string name = target.method + " on " + target.scene;
-    auto place = std::find(done.begin(), done.end(), name);
-    if (place == done.end()) {
+    if (done.empty() || done.back().first != name) {
       const scenes::Scene scene = run.scene(target.scene);
-      rides.push_back(longest_ride(run, target, scene));
-      add_ride(table, scene, rides.back());
-      Series series{name, {}, {}};
-      for (const RideCheckpoint& at : rides.back().checkpoints) {
-        series.x.push_back(at.period);
-        series.y.push_back(at.errors.path);
+      done.emplace_back(name, rides_for(run, target, scene));
+      for (const Ride& ride : done.back().second) {
+        add_ride(table, scene, ride);
+        plot.series.push_back(path_errors(fmt::format("{}, fairing {}", name, ride.settings.fairing_iterations), ride));
       }
-      plot.series.push_back(series);
-      place = done.insert(done.end(), name);
     }
-    report.claims.push_back(judge(target, rides[std::size_t(place - done.begin())]));
+    report.claims.push_back(judge(target, done.back().second[0], done.back().second[1]));
   }
   run.write_csv("targets", table, report);
   if (!plot.series.empty())
