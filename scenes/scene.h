@@ -67,8 +67,10 @@ struct TrackingSpec {
   double threshold = 0;            ///< 0: the one that puts a flat surface half a spacing outside the particles
   double edge_length = 0.75;       ///< Edge length of an extracted mesh, in spacings.
   int fairing_iterations = 10;
-  double fairing_stiffness = 0.3;  ///< 0 to 1
-  bool remeshing = true;           ///< Split, collapse and flip edges of a stretching surface.
+  double fairing_stiffness = 0.3;            ///< 0 to 1
+  std::string fairing_springs = "constant";  ///< constant, variable
+  bool confidence = false;                   ///< Write how well the field determines the velocity.
+  bool remeshing = true;                     ///< Split, collapse and flip edges of a stretching surface.
   bool guard = true;
 };
 
@@ -93,7 +95,7 @@ struct RenderSpec {
   CameraSpec camera;
   int width = 960, height = 540;   ///< pixels
   int samples = 4;                 ///< rays a pixel
-  std::string style = "textured";  ///< textured, solid (colour of the rest position), normals
+  std::string style = "textured";  ///< textured, solid (colour of the rest position), normals, confidence
   bool ground = true;              ///< A ground plane that catches shadows.
   double ground_height = 0;        ///< m
   std::array<double, 3> ground_color{0.45, 0.45, 0.45};

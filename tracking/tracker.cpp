@@ -95,6 +95,9 @@ class TrackerImpl {
     finish();
   }
 
+  std::vector<Confidence> confidence() const {
+    return field_ ? field_confidence(*field_, mesh_.positions) : std::vector<Confidence>(mesh_.positions.size());
+  }
   const SurfaceMesh& mesh() const { return mesh_; }
   const TrackerReport& report() const { return report_; }
   const TrackerSettings& settings() const { return settings_; }
@@ -176,7 +179,9 @@ class TrackerImpl {
   Projection fair_and_project() {
     {
       Stopwatch watch(report_.seconds_fairing);
-      fair(*field_, topology_, rest_lengths_, {settings_.fairing_iterations, settings_.fairing_stiffness},
+      std::vector<Confidence> confidence;
+      if (settings_.variable_springs) confidence = field_confidence(*field_, mesh_.positions);
+      fair(*field_, topology_, rest_lengths_, {settings_.fairing_iterations, settings_.fairing_stiffness}, confidence,
            mesh_.positions);
       if (settings_.remeshing) remesh_surface();
     }
@@ -302,6 +307,7 @@ Tracker::Tracker(Tracker&&) noexcept = default;
 Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 
 void Tracker::advance(const Particles& particles) { impl_->advance(particles); }
+std::vector<Confidence> Tracker::confidence() const { return impl_->confidence(); }
 const SurfaceMesh& Tracker::mesh() const { return impl_->mesh(); }
 const TrackerReport& Tracker::report() const { return impl_->report(); }
 const TrackerSettings& Tracker::settings() const { return impl_->settings(); }

@@ -9,6 +9,7 @@
 #include "tracking/field/metaball_field.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/particles.h"
+#include "tracking/velocity/confidence.h"
 #include "tracking/velocity/velocity_method.h"
 
 namespace flowskin::tracking {
@@ -22,6 +23,7 @@ struct TrackerSettings {
   double edge_length = 0;          ///< Edge length of an extracted mesh (m); 0: 0.75 spacings.
   int fairing_iterations = 10;     ///< [FMM13, 3.4]
   double fairing_stiffness = 0.3;  ///< Share of the way to the spring equilibrium an iteration goes, 0 to 1.
+  bool variable_springs = false;   ///< Fairing is soft where the field determines the velocity well.
   bool remeshing = true;           ///< Split, collapse and flip edges of a stretching mesh; false: as in the paper.
   bool guard = true;               ///< Replace a mesh that no longer fits the field by a fresh extraction.
 };
@@ -57,6 +59,8 @@ class Tracker {
   void advance(const Particles& particles);
 
   const SurfaceMesh& mesh() const;
+  /// How well the field alone determines the tangential velocity of each vertex, now. Worked out anew by each call.
+  std::vector<Confidence> confidence() const;
   const TrackerReport& report() const;
   /// Settings with all automatic values filled in.
   const TrackerSettings& settings() const;

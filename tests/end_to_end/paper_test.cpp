@@ -73,6 +73,8 @@ TEST_F(Paper, AllFilesAreThere) {
                            "ring_strong.png",
                            "ring_medium.png",
                            "ring_weak.png",
+                           "springs.csv",
+                           "springs.svg",
                            "targets.csv",
                            "targets.svg",
                            "convergence.csv",
@@ -112,7 +114,8 @@ TEST_F(Paper, EveryClaimHasAVerdictAndEveryPictureIsShown) {
 }
 
 TEST_F(Paper, TablesAreNumbers) {
-  for (const char* name : {"translation.csv", "circling.csv", "ring.csv", "convergence.csv", "targets.csv"}) {
+  for (const char* name :
+       {"translation.csv", "circling.csv", "ring.csv", "convergence.csv", "springs.csv", "targets.csv"}) {
     const Table rides = table(name);
     ASSERT_GT(rides.rows(), 0u) << name;
     for (std::size_t row = 0; row < rides.rows(); ++row)

@@ -63,11 +63,38 @@ double strain(const Body& body, const std::vector<Vec3>& positions) {
 TEST(Fairing, KeepsAMeshAtRest) {
   const Body body(5.3);
   std::vector<Vec3> positions = body.surface.positions;
-  fair(body.field, body.topology, body.rest_lengths, {10, 0.3}, positions);
+  fair(body.field, body.topology, body.rest_lengths, {10, 0.3}, {}, positions);
   // Projection onto the tangent plane makes springs on a curved surface a little shorter than they are: no more than
   // that second-order effect may show.
   EXPECT_LT(largest_difference(positions, body.surface.positions), 0.1 * kEdge);
   EXPECT_LT(root_mean_square(positions, body.surface.positions), 0.03 * kEdge);
+}
+
+// Springs measured along the surface: what has its rest lengths stays where it is, on a curved surface too.
+TEST(Fairing, VariableSpringsKeepAMeshAtRestExactly) {
+  const Body body(5.3);
+  std::vector<Vec3> positions = body.surface.positions;
+  project_to_surface(body.field, default_projection(body.field.settings()), positions);
+  const std::vector<double> rest_lengths = edge_lengths(body.topology, positions);
+  const std::vector<Vec3> start = positions;
+  fair(body.field, body.topology, rest_lengths, {10, 0.3}, std::vector<Confidence>(positions.size()), positions);
+  EXPECT_LT(largest_difference(positions, start), 1e-6 * kEdge);
+}
+
+TEST(Fairing, VariableSpringsHoldBackWhereTheVelocityIsKnown) {
+  const Body body(5.3);
+  const std::vector<Vec3> start = perturbed(body, 0.15);
+  std::vector<Confidence> known(start.size()), half(start.size());
+  for (Confidence& confidence : known) confidence = {1, 1, Vec3::UnitX()};
+  for (Confidence& confidence : half) confidence = {0.5, 0.5, Vec3::UnitX()};
+  std::vector<Vec3> soft = start, medium = start, stiff = start;
+  fair(body.field, body.topology, body.rest_lengths, {3, 0.3}, known, soft);
+  fair(body.field, body.topology, body.rest_lengths, {3, 0.3}, half, medium);
+  fair(body.field, body.topology, body.rest_lengths, {3, 0.3}, std::vector<Confidence>(start.size()), stiff);
+  EXPECT_LT(largest_difference(soft, start), 1e-6 * kEdge);
+  EXPECT_LT(root_mean_square(medium, start), 0.8 * root_mean_square(stiff, start));
+  EXPECT_LT(strain(body, stiff), strain(body, medium));
+  EXPECT_LT(strain(body, medium), strain(body, start));
 }
 
 TEST(Fairing, RepairsAPerturbedMesh) {
@@ -75,7 +102,7 @@ TEST(Fairing, RepairsAPerturbedMesh) {
   std::vector<Vec3> positions = perturbed(body, 0.15);
   const double before = strain(body, positions);
   const double away = root_mean_square(positions, body.surface.positions);
-  fair(body.field, body.topology, body.rest_lengths, {10, 0.3}, positions);
+  fair(body.field, body.topology, body.rest_lengths, {10, 0.3}, {}, positions);
   EXPECT_LT(strain(body, positions), 0.4 * before);
   EXPECT_LT(root_mean_square(positions, body.surface.positions), 0.7 * away);
   for (const Vec3& x : positions) EXPECT_LT(surface_distance(body.field, x).distance, 0.02 * kEdge);
@@ -85,9 +112,9 @@ TEST(Fairing, NoIterationsAndNoStiffnessChangeNothing) {
   const Body body(3.1);
   std::vector<Vec3> positions = perturbed(body, 0.1);
   const std::vector<Vec3> before = positions;
-  fair(body.field, body.topology, body.rest_lengths, {0, 0.3}, positions);
+  fair(body.field, body.topology, body.rest_lengths, {0, 0.3}, {}, positions);
   EXPECT_EQ(positions, before);
-  fair(body.field, body.topology, body.rest_lengths, {10, 0}, positions);
+  fair(body.field, body.topology, body.rest_lengths, {10, 0}, {}, positions);
   EXPECT_LT(largest_difference(positions, before), 1e-6);
 }
 
@@ -97,7 +124,7 @@ TEST(Fairing, NeverBlowsUp) {
     std::vector<double> lengths = body.rest_lengths;
     for (double& length : lengths) length *= factor;
     std::vector<Vec3> positions = perturbed(body, 0.3);
-    fair(body.field, body.topology, lengths, {100, 1.0}, positions);
+    fair(body.field, body.topology, lengths, {100, 1.0}, {}, positions);
     for (const Vec3& x : positions) {
       ASSERT_TRUE(x.allFinite());
       EXPECT_LT(surface_distance(body.field, x).distance, 0.1 * kEdge) << "rest lengths times " << factor;
@@ -116,11 +143,11 @@ TEST(Fairing, MoveGoesTheShareOfTheWayToEquilibrium) {
   }
   const MeshTopology topology = build_topology(7, triangles);
   const std::vector<double> rest(topology.edges.size(), 1.0);
-  const Vec3 move = fairing_move(0, {0, 0, 1}, topology, rest, 0.5, positions);
+  const Vec3 move = fairing_move({topology, rest, Laying::projected, 0.5}, 0, {0, 0, 1}, positions);
   EXPECT_LT((move - 0.5 * Vec3(-0.05, 0.03, 0)).norm(), 0.15 * 0.5 * 0.06);
   // A cap of a quarter of the shortest edge, in space.
   positions[0] = {0.6, 0, 0};
-  const Vec3 far = fairing_move(0, {0, 0, 1}, topology, rest, 1.0, positions);
+  const Vec3 far = fairing_move({topology, rest, Laying::projected, 1.0}, 0, {0, 0, 1}, positions);
   EXPECT_LE(far.norm(), 0.25 * std::hypot(0.4, 0.2) + 1e-12);
   EXPECT_LT(far[0], 0);
 }
@@ -130,9 +157,9 @@ TEST(Fairing, SameBytesAtAnyThreadCount) {
   const int threads = omp_get_max_threads();
   std::vector<Vec3> one = perturbed(body, 0.2), three = one;
   omp_set_num_threads(1);
-  fair(body.field, body.topology, body.rest_lengths, {10, 0.3}, one);
+  fair(body.field, body.topology, body.rest_lengths, {10, 0.3}, {}, one);
   omp_set_num_threads(3);
-  fair(body.field, body.topology, body.rest_lengths, {10, 0.3}, three);
+  fair(body.field, body.topology, body.rest_lengths, {10, 0.3}, {}, three);
   omp_set_num_threads(threads);
   EXPECT_EQ(one, three);
 }

@@ -62,10 +62,19 @@ TEST(MovingLeastSquares, MisfitIsTheShareThatNoLinearFlowExplains) {
   const double of_noise = local_flow(moving(particles, velocities, 2.5 * spacing), Vec3::Zero()).misfit;
   EXPECT_GT(of_noise, 0.7);
   EXPECT_LE(of_noise, 1);
-  for (Vec3& v : velocities) v = Vec3(10, 0, 0) + 0.1 * v;
-  const double of_little_noise = local_flow(moving(particles, velocities, 2.5 * spacing), Vec3::Zero()).misfit;
-  EXPECT_GT(of_little_noise, 0.7 * 0.1 / 10 * 0.9);
-  EXPECT_LT(of_little_noise, 0.1 / 10);
+  // It is the spread of the velocities that counts: a common velocity changes nothing, a linear flow does.
+  std::vector<Vec3> shifted, sheared;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    shifted.push_back(Vec3(10, 0, 0) + velocities[i]);
+    sheared.push_back(Vec3(100 / spacing * particles[i].y(), 0, 0) + velocities[i]);
+  }
+  EXPECT_NEAR(local_flow(moving(particles, shifted, 2.5 * spacing), Vec3::Zero()).misfit, of_noise, 1e-9);
+  const LocalFlow shear = local_flow(moving(particles, sheared, 2.5 * spacing), Vec3::Zero());
+  EXPECT_LT(shear.misfit, 0.02);
+  // The gradient's error is what the noise of the velocities leads to expect.
+  const double error2 = (shear.gradient - Vec3::UnitX() * (100 / spacing) * Vec3::UnitY().transpose()).squaredNorm();
+  EXPECT_GT(error2, 0.1 * shear.gradient_error2);
+  EXPECT_LT(error2, 5 * shear.gradient_error2);
 }
 
 TEST(MovingLeastSquares, LeavesOutTheGradientWhereParticlesDoNotSpread) {

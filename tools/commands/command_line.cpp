@@ -34,7 +34,7 @@ struct Choice {
   PaperOptions paper;
   bool no_pictures = false, no_video = false;
   std::vector<std::filesystem::path> info_files;
-  bool scene_defaults = false, scene_keys = false;
+  bool scene_defaults = false, scene_keys = false, methods_table = false;
 };
 
 CLI::App* add_run(CLI::App& app, Choice& choice) {
@@ -64,8 +64,8 @@ CLI::App* add_render(CLI::App& app, Choice& choice) {
   render->add_option("--camera", options.camera, "Camera position x y z (m)")->expected(3);
   render->add_option("--look-at", options.look_at, "Point the camera looks at, x y z (m)")->expected(3);
   render->add_option("--fov", options.vertical_fov, "Vertical field of view (degrees)")->check(CLI::Range(1.0, 170.0));
-  render->add_option("--style", options.style, "textured, solid or normals (default: the scene's)")
-      ->check(CLI::IsMember({"textured", "solid", "normals"}));
+  render->add_option("--style", options.style, "textured, solid, normals or confidence (default: the scene's)")
+      ->check(CLI::IsMember({"textured", "solid", "normals", "confidence"}));
   render->add_option("--what", options.what, "surface, particles or both")
       ->check(CLI::IsMember({"surface", "particles", "both"}))
       ->capture_default_str();
@@ -106,6 +106,7 @@ int run_choice(int argc, const char* const* argv) {
   CLI::App* info = app.add_subcommand("info", "Say what is in a mesh, particle or scene file, and whether it is sound");
   info->add_option("files", choice.info_files, "OBJ, PLY or scene files")->required();
   CLI::App* methods = app.add_subcommand("methods", "List the velocity methods and when to use which");
+  methods->add_flag("--table", choice.methods_table, "Their errors on flows that are known everywhere (Markdown)");
   CLI::App* scene = app.add_subcommand("scene", "Describe the scene file");
   auto* about = scene->add_option_group("about");
   about->add_flag("--defaults", choice.scene_defaults, "A scene with every key at its default, as JSON");
@@ -134,7 +135,7 @@ int run_choice(int argc, const char* const* argv) {
   }
   if (*paper) return paper_command(choice.paper);
   if (*info) return info_command(choice.info_files);
-  if (*methods) return methods_command();
+  if (*methods) return methods_command(choice.methods_table);
   return scene_command(choice.scene_defaults ? "defaults" : "keys");
 }
 

@@ -27,7 +27,8 @@ struct RenderOptions {
 
 int render_command(const RenderOptions& options);
 int info_command(const std::vector<std::filesystem::path>& files);
-int methods_command();
+/// `table`: their errors on the test flows as well.
+int methods_command(bool table);
 int paper_command(const PaperOptions& options);
 /// `what`: "defaults" or "keys" (as a Markdown table).
 int scene_command(const std::string& what);

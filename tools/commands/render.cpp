@@ -61,7 +61,10 @@ class Redraw {
     int done = 0;
     for (int frame : surface_frames_) {
       const auto mesh = read_surface_ply(directory_.surface(frame, ".ply"));
-      pictures.draw(frame, dress(mesh, frame / scene_.frame_rate, scene_.texture, rest_));
+      SurfaceFrame surface = dress(mesh, frame / scene_.frame_rate, scene_.texture, rest_);
+      if (scene_.render.style == "confidence")
+        surface.confidence = read_surface_confidence(directory_.surface(frame, ".ply"));
+      pictures.draw(frame, surface);
       step(progress, ++done);
     }
     for (int frame : particle_frames_) {

@@ -65,6 +65,7 @@ std::string best_method();
 ExperimentReport translation_experiment(const PaperRun& run);  ///< Fig. 2
 ExperimentReport circling_experiment(const PaperRun& run);     ///< Figs. 4, 8, 9
 ExperimentReport ring_experiment(const PaperRun& run);         ///< Figs. 6, 7
+ExperimentReport springs_experiment(const PaperRun& run);      ///< Sec. 5: variable spring constants.
 ExperimentReport targets_experiment(const PaperRun& run);      ///< What this project promises on the ring.
 ExperimentReport convergence_experiment(const PaperRun& run);  ///< Step counts and order.
 ExperimentReport timing_experiment(const PaperRun& run);       ///< Milliseconds a step.

@@ -27,9 +27,9 @@ constexpr struct {
   const char* name;
   ExperimentReport (*run)(const PaperRun&);
 } kExperiments[] = {
-    {"translation", translation_experiment}, {"circling", circling_experiment},       {"ring", ring_experiment},
-    {"targets", targets_experiment},         {"convergence", convergence_experiment}, {"timing", timing_experiment},
-    {"stairs", stairs_experiment},
+    {"translation", translation_experiment}, {"circling", circling_experiment}, {"ring", ring_experiment},
+    {"springs", springs_experiment},         {"targets", targets_experiment},   {"convergence", convergence_experiment},
+    {"timing", timing_experiment},           {"stairs", stairs_experiment},
 };
 
 // The folder of this program; empty where the system does not tell.

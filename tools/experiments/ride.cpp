@@ -116,8 +116,10 @@ class Rider {
     const tracking::ProjectionSettings projection = tracking::default_projection(field.settings());
     failed_ = int(tracking::project_to_surface(field, projection, positions_).failed.size());
     if (settings_.fairing_iterations == 0) return;
+    std::vector<tracking::Confidence> confidence;
+    if (settings_.variable_springs) confidence = tracking::field_confidence(field, positions_);
     tracking::fair(field, topology_, rest_lengths_, {settings_.fairing_iterations, scene_.tracking.fairing_stiffness},
-                   positions_);
+                   confidence, positions_);
     failed_ = int(tracking::project_to_surface(field, projection, positions_).failed.size());
   }
 
@@ -156,6 +158,7 @@ RideSettings ride_settings(const scenes::Scene& scene) {
   settings.steps_per_period = int(std::lround(period * scene.frame_rate * scene.tracking.steps_per_frame));
   settings.periods = int(std::lround(scene.frames / scene.frame_rate / period));
   settings.fairing_iterations = tracker.fairing_iterations;
+  settings.variable_springs = tracker.variable_springs;
   return settings;
 }
 

@@ -18,6 +18,7 @@ struct RideSettings {
   int steps_per_period = 0;  ///< Period: a revolution, or the whole duration of a translation.
   int periods = 1;
   int fairing_iterations = 0;
+  bool variable_springs = false;  ///< Soft where the field determines the velocity; false: as in the paper.
 };
 
 /// As the scene says.

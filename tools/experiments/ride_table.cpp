@@ -18,8 +18,9 @@ void add_checkpoint(ResultTable& table, const scenes::Scene& scene, const Ride& 
   const RideErrors& errors = without_spin ? at.unspinning : at.errors;
   table.add({scene.name, without_spin ? std::string("without spin") : std::string("motion"), ride.settings.velocity,
              integrator_name(ride.settings.integrator), ride.settings.steps_per_period,
-             ride.settings.fairing_iterations, int(at.positions.size()), at.period, errors.back.mean, errors.back.max,
-             errors.path, errors.end.mean, errors.end.max, errors.velocity_error, at.strain, at.failed});
+             ride.settings.fairing_iterations, std::string(ride.settings.variable_springs ? "variable" : "constant"),
+             int(at.positions.size()), at.period, errors.back.mean, errors.back.max, errors.path, errors.end.mean,
+             errors.end.max, errors.velocity_error, at.strain, at.failed});
 }
 
 }  // namespace
@@ -32,6 +33,7 @@ ResultTable ride_table() {
                    "integrator",
                    "steps_a_period",
                    "fairing_iterations",
+                   "springs",
                    "vertices",
                    "periods",
                    "return_error_mean",

@@ -66,7 +66,7 @@ StepTime time_steps(const scenes::Scene& scene, const tracking::SurfaceMesh& sta
     for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += step * velocities[v];
     tracking::project_to_surface(next, projection, positions);
     const double projected = wall_seconds();
-    tracking::fair(next, topology, rest_lengths, {kIterations, scene.tracking.fairing_stiffness}, positions);
+    tracking::fair(next, topology, rest_lengths, {kIterations, scene.tracking.fairing_stiffness}, {}, positions);
     const double faired = wall_seconds();
     tracking::project_to_surface(next, projection, positions);
     velocity.push_back(1e3 * (moved - begin));

@@ -49,6 +49,7 @@ void check_frame(const SurfaceFrame& frame, const std::filesystem::path& file) {
   checker.finite(mesh.velocities, "velocities");
   checker.finite(frame.normals, "normals");
   checker.finite(frame.vertex_uvs, "texture coordinates");
+  if (!frame.confidence.empty()) checker.finite(frame.confidence, "confidences");
   checker.length(mesh.ids, "ids");
   checker.length(frame.colors, "colours");
   if (frame.corner_uvs.size() != mesh.triangles.size())

@@ -78,6 +78,10 @@ void add_vertices(ByteBuffer& ply, const SurfaceFrame& frame, const IdColumn& id
     ply.vec3(mesh.velocities[i]);
     ply.vec3(mesh.rest_positions[i]);
     id_column.add(ply, mesh.ids[i]);
+    if (!frame.confidence.empty()) {
+      ply.f32(frame.confidence[i].x());
+      ply.f32(frame.confidence[i].y());
+    }
   }
 }
 
@@ -91,6 +95,23 @@ void add_faces(ByteBuffer& ply, const SurfaceFrame& frame) {
       ply.f32(uv.y());
     }
   }
+}
+
+scenes::PlyFile read_columns(const std::filesystem::path& file) {
+  try {
+    return scenes::read_ply(file);
+  } catch (const scenes::SceneError& error) {
+    throw InputError(error.what());
+  }
+}
+
+/// Two columns, or nothing where the file has none of that name.
+std::vector<Vec2f> read_confidence(const scenes::PlyFile& ply) {
+  const auto weak = ply.vertex.find("confidence"), strong = ply.vertex.find("confidence_strong");
+  if (weak == ply.vertex.end() || strong == ply.vertex.end()) return {};
+  std::vector<Vec2f> result(ply.vertex_count);
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = {float(weak->second[i]), float(strong->second[i])};
+  return result;
 }
 
 /// Three float columns as vectors. @throws InputError where one is missing or holds no finite number.
@@ -143,6 +164,7 @@ void write_surface_ply(const std::filesystem::path& file, const SurfaceFrame& fr
   add_properties(ply, "uchar", {"red", "green", "blue"});
   add_properties(ply, "float", {"vx", "vy", "vz", "rest_x", "rest_y", "rest_z"});
   ply.text(id_column.property());
+  if (!frame.confidence.empty()) add_properties(ply, "float", {"confidence", "confidence_strong"});
   add_element(ply, "face", frame.mesh.triangles.size());
   ply.text("property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n");
   add_vertices(ply, frame, id_column);
@@ -176,14 +198,13 @@ void write_particles_ply(const std::filesystem::path& file, const ParticleFrame&
   write_file(file, ply.view());
 }
 
+std::vector<Vec2f> read_surface_confidence(const std::filesystem::path& file) {
+  return read_confidence(read_columns(file));
+}
+
 tracking::SurfaceMesh read_surface_ply(const std::filesystem::path& file) {
   const std::string name = file.string();
-  scenes::PlyFile ply;
-  try {
-    ply = scenes::read_ply(file);
-  } catch (const scenes::SceneError& error) {
-    throw InputError(error.what());
-  }
+  const scenes::PlyFile ply = read_columns(file);
   tracking::SurfaceMesh mesh;
   mesh.positions = read_vectors(ply, {"x", "y", "z"}, name);
   mesh.rest_positions = read_vectors(ply, {"rest_x", "rest_y", "rest_z"}, name);

@@ -34,6 +34,13 @@ class VtpArrays {
     ByteBuffer& data = begin(xml, name, "Float32", 3, values.size(), 4);
     for (const Vector& v : values) data.vec3(v);
   }
+  void pairs(ByteBuffer& xml, std::string_view name, const std::vector<Vec2f>& values) {
+    ByteBuffer& data = begin(xml, name, "Float32", 2, values.size(), 4);
+    for (const Vec2f& v : values) {
+      data.f32(v.x());
+      data.f32(v.y());
+    }
+  }
   void colors(ByteBuffer& xml, const std::vector<Color>& values) {
     ByteBuffer& data = begin(xml, "color", "UInt8", 3, values.size(), 1);
     for (const Color& color : values)
@@ -113,15 +120,12 @@ void write_surface_vtp(const std::filesystem::path& file, const SurfaceFrame& fr
   begin_piece(xml, frame.time, mesh.positions.size(), 0, mesh.triangles.size());
   xml.text("      <PointData Normals=\"Normals\" TCoords=\"TCoords\" Scalars=\"color\" Vectors=\"velocity\">\n");
   arrays.vectors(xml, "Normals", frame.normals);
-  ByteBuffer& uvs = arrays.begin(xml, "TCoords", "Float32", 2, frame.vertex_uvs.size(), 4);
-  for (const Vec2f& uv : frame.vertex_uvs) {
-    uvs.f32(uv.x());
-    uvs.f32(uv.y());
-  }
+  arrays.pairs(xml, "TCoords", frame.vertex_uvs);
   arrays.colors(xml, frame.colors);
   arrays.vectors(xml, "velocity", mesh.velocities);
   arrays.vectors(xml, "rest_position", mesh.rest_positions);
   arrays.ids(xml, mesh.ids);
+  if (!frame.confidence.empty()) arrays.pairs(xml, "confidence", frame.confidence);
   xml.text("      </PointData>\n      <Points>\n");
   arrays.vectors(xml, "Points", mesh.positions);
   xml.text("      </Points>\n      <Polys>\n");

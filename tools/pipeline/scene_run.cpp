@@ -124,6 +124,8 @@ void SceneRun::record(int frame) {
   if (tracker_) {
     surface = std::make_unique<SurfaceFrame>(dress(tracker_->mesh(), time, scene_.texture, rest_));
     surface->texture_file = FrameWriter::kTextureFile;
+    if (scene_.tracking.confidence || scene_.render.style == "confidence")
+      surface->confidence = confidence_attribute(*tracker_);
   }
   clock_.time("writing", [&] {
     writer_->write(frame, particles);

@@ -21,9 +21,17 @@ tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
   settings.edge_length = spec.edge_length * spacing;
   settings.fairing_iterations = spec.fairing_iterations;
   settings.fairing_stiffness = spec.fairing_stiffness;
+  settings.variable_springs = spec.fairing_springs == "variable";
   settings.remeshing = spec.remeshing;
   settings.guard = spec.guard;
   return settings;
+}
+
+std::vector<Vec2f> confidence_attribute(const tracking::Tracker& tracker) {
+  std::vector<Vec2f> attribute;
+  for (const tracking::Confidence& confidence : tracker.confidence())
+    attribute.emplace_back(float(confidence.weak), float(confidence.strong));
+  return attribute;
 }
 
 scenes::SceneVocabulary scene_vocabulary() {

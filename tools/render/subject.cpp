@@ -8,6 +8,7 @@
 
 #include "tools/errors.h"
 #include "tools/render/color.h"
+#include "tools/textures/perceptual_color.h"
 
 namespace flowskin::tools {
 namespace {
@@ -33,6 +34,11 @@ void check_surface(const SurfaceFrame& frame, Style style) {
   const std::size_t vertices = frame.mesh.positions.size(), triangles = frame.mesh.triangles.size();
   require_length("normals", frame.normals.size(), vertices, "vertices");
   if (style == Style::solid) require_length("colours", frame.colors.size(), vertices, "vertices");
+  if (style == Style::confidence) {
+    if (frame.confidence.empty() && vertices > 0)
+      throw InputError("the style confidence needs the scene's key tracking.confidence to be true when it is run");
+    require_length("confidences", frame.confidence.size(), vertices, "vertices");
+  }
   if (style == Style::textured) {
     require_length("corner texture coordinates", frame.corner_uvs.size(), triangles, "triangles");
   }
@@ -50,13 +56,20 @@ Vec3f decode(const Vec3f& srgb) {
   return {srgb_to_linear(srgb.x()), srgb_to_linear(srgb.y()), srgb_to_linear(srgb.z())};
 }
 
+// From dark blue over green to yellow, evenly in lightness.
+Vec3f heat(float share) {
+  const double s = std::clamp(double(share), 0.0, 1.0);
+  return linear_from_oklch(0.28 + 0.62 * s, 0.11 + 0.05 * s, 0.78 - 0.48 * s).cast<float>();
+}
+
 }  // namespace
 
 Style style_from_name(const std::string& name) {
   if (name == "textured") return Style::textured;
   if (name == "solid") return Style::solid;
   if (name == "normals") return Style::normals;
-  throw InputError(fmt::format("render.style is \"{}\": expected textured, solid or normals", name));
+  if (name == "confidence") return Style::confidence;
+  throw InputError(fmt::format("render.style is \"{}\": expected textured, solid, normals or confidence", name));
 }
 
 SurfaceSubject::SurfaceSubject(const TraceDevice& device, const SurfaceFrame& frame, Style style, const MipMap& texture,
@@ -89,6 +102,10 @@ Vec3f SurfaceSubject::styled_color(const RayHit& hit, const Vec3f& normal, float
       return w * to_linear(frame_.colors[std::size_t(triangle[0])]) +
              hit.u * to_linear(frame_.colors[std::size_t(triangle[1])]) +
              hit.v * to_linear(frame_.colors[std::size_t(triangle[2])]);
+    case Style::confidence:
+      return heat(w * frame_.confidence[std::size_t(triangle[0])].x() +
+                  hit.u * frame_.confidence[std::size_t(triangle[1])].x() +
+                  hit.v * frame_.confidence[std::size_t(triangle[2])].x());
     case Style::normals:
       return decode(0.5f * (Vec3f::Ones() + normal));
   }

@@ -12,9 +12,10 @@ namespace flowskin::tools {
 
 /// What a surface frame's colour shows.
 enum class Style {
-  textured,  ///< The texture, by corner_uvs.
-  solid,     ///< frame.colors, smoothly between the vertices.
-  normals,   ///< Red, green, blue = (1 + normal) / 2, sRGB-coded, neither lit nor developed: to be read off.
+  textured,    ///< The texture, by corner_uvs.
+  solid,       ///< frame.colors, smoothly between the vertices.
+  normals,     ///< Red, green, blue = (1 + normal) / 2, sRGB-coded, neither lit nor developed: to be read off.
+  confidence,  ///< frame.confidence of the weaker direction: dark blue 0, green, yellow 1.
 };
 
 /// @throws InputError naming the styles there are.

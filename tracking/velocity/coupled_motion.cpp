@@ -9,9 +9,10 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr int kChunk = 512;       // vertices whose sums are formed together, so that they do not depend on threads
-constexpr double kLeast = 1e-12;  // eigenvalues smaller than this share of the largest count as zero
-constexpr double kRidge = 1e-13;  // keeps the block of a lone vertex invertible, relative to its trace
+constexpr int kChunk = 512;           // vertices whose sums are formed together, so that they do not depend on threads
+constexpr double kLongestEdge = 1e6;  // in radii
+constexpr double kLeast = 1e-12;      // eigenvalues smaller than this share of the largest count as zero
+constexpr double kRidge = 1e-13;      // keeps the block of a lone vertex invertible, relative to its trace
 
 int chunk_count(std::size_t vertices) { return static_cast<int>((vertices + kChunk - 1) / kChunk); }
 
@@ -52,6 +53,7 @@ class CoupledSystem {
         topology_(topology.vertex_count() == count_ ? &topology : nullptr),
         weights_(weights),
         places_(count_),
+        seen_(count_, 0),
         blocks_(count_),
         right_side_(count_) {
     add_field_rows(field, positions);
@@ -106,6 +108,7 @@ class CoupledSystem {
       if (!block.allFinite() || !right.allFinite()) continue;
       blocks_[v] = block;
       right_side_[v] = right;
+      seen_[v] = 1;
     }
   }
 
@@ -127,15 +130,17 @@ class CoupledSystem {
     std::vector<Vec3> centers(part_count, Vec3::Zero());
     std::vector<int> sizes(part_count, 0);
     for (int v = 0; v < count_; ++v) {
+      if (!seen_[v]) continue;
       centers[component[v]] += places_[v];
       ++sizes[component[v]];
     }
-    for (int c = 0; c < part_count; ++c) centers[c] /= sizes[c];
+    for (int c = 0; c < part_count; ++c) centers[c] /= std::max(1, sizes[c]);
 
     std::vector<std::vector<Sum>> sums(chunk_count(count_));
 #pragma omp parallel for schedule(static)
     for (int chunk = 0; chunk < static_cast<int>(sums.size()); ++chunk) {
       for (int v = chunk * kChunk; v < std::min(count_, (chunk + 1) * kChunk); ++v) {
+        if (!seen_[v]) continue;
         if (sums[chunk].empty() || sums[chunk].back().component != component[v]) sums[chunk].push_back({component[v]});
         Matrix to_vertex = Matrix::Identity();
         to_vertex.template topRightCorner<3, Motion::parameters>() = lever(places_[v] - centers[component[v]]);
@@ -158,6 +163,7 @@ class CoupledSystem {
       const Gradient gradient = motion.template tail<Motion::parameters>();
       start[v] = motion;
       start[v].template head<3>() += Motion::apply(gradient, places_[v] - centers[component[v]]);
+      if (!start[v].allFinite()) start[v].setZero();
     }
     return start;
   }
@@ -170,9 +176,10 @@ class CoupledSystem {
     return solver.eigenvectors() * along;
   }
 
+  // Zero for ends in one place, and where one of them is nowhere near.
   double edge_weight(const Vec3& d) const {
     const double length2 = d.squaredNorm();
-    return length2 > 0 ? weights_.velocity / length2 : 0;
+    return length2 > 0 && length2 < kLongestEdge * kLongestEdge ? weights_.velocity / length2 : 0;
   }
 
   void add_edges_to_blocks() {
@@ -183,6 +190,7 @@ class CoupledSystem {
       for (const auto& neighbor : topology_->ring(v)) {
         const Vec3 d = places_[v] - places_[neighbor.vertex];
         const double w = edge_weight(d);
+        if (w == 0) continue;
         const auto x = lever(d);
         block.template topLeftCorner<3, 3>().diagonal().array() += w;
         block.template topRightCorner<3, Motion::parameters>() -= 0.5 * w * x;
@@ -200,14 +208,17 @@ class CoupledSystem {
     Gradient moment = Gradient::Zero();
     for (const auto& neighbor : topology_->ring(vertex)) {
       const Vec3 d = places_[vertex] - places_[neighbor.vertex];
+      const double w = edge_weight(d);
+      if (w == 0) continue;
       const Vector& other = y[neighbor.vertex];
       const Gradient gradient = other.template tail<Motion::parameters>();
-      const Vec3 carried = edge_weight(d) * (other.template head<3>() + 0.5 * Motion::apply(gradient, d));
+      const Vec3 carried = w * (other.template head<3>() + 0.5 * Motion::apply(gradient, d));
       force -= carried;
       moment += 0.5 * Motion::adjoint(carried, d) - weights_.gradient * gradient;
     }
     Vector result;
-    result << force, moment;
+    result.template head<3>() = force;
+    result.template tail<Motion::parameters>() = moment;
     return result;
   }
 
@@ -292,6 +303,7 @@ class CoupledSystem {
   const MeshTopology* topology_;  // null: no edges
   CouplingWeights weights_;
   std::vector<Vec3> places_;    // in radii
+  std::vector<char> seen_;      // the field says something there
   std::vector<Matrix> blocks_;  // of the diagonal; later the inverses of their Cholesky factors
   Field right_side_, start_, unscaled_;
 };

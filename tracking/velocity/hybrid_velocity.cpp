@@ -11,9 +11,10 @@ namespace {
 
 // Chosen by measurement, see docs/velocity_methods.md.
 constexpr RowWeights row_weights{1, 1, 1};
-constexpr double flow_weight = 30;     // of the particles' flow, for a misfit of 1; it grows as 1 / misfit^2
-constexpr double least_misfit = 3e-5;  // squares of smaller misfits are rounding
-constexpr int flow_unknowns = 4;       // particles needed for a linear flow
+constexpr double flow_weight = 100;       // of the particles' flow, for a misfit of 1; it grows as 1 / misfit^2
+constexpr double least_misfit = 3e-5;     // squares of smaller misfits are rounding
+constexpr int flow_unknowns = 4;          // particles that a linear flow always fits
+constexpr double strain_share = 2.0 / 3;  // of the errors of a gradient's nine elements
 
 using Motion = Eigen::Matrix<double, 12, 1>;
 
@@ -30,10 +31,21 @@ double expected_misfit2(const LocalFlow& flow) {
   return flow.misfit * flow.misfit * n / (n - flow_unknowns) + least_misfit * least_misfit;
 }
 
+/// The strain rate is the part of the flow that noise fakes most easily, and it is extrapolated to the surface: what is
+/// not larger than its expected error is taken out [positive-part James-Stein].
+LocalFlow with_significant_strain(LocalFlow flow) {
+  const Mat3 strain = (flow.gradient + flow.gradient.transpose()) / 2;
+  const double error2 = strain_share * flow.gradient_error2, strain2 = strain.squaredNorm();
+  const Mat3 removed = strain2 > error2 ? Mat3(error2 / strain2 * strain) : strain;
+  flow.gradient -= removed;
+  flow.velocity += removed * flow.center;
+  return flow;
+}
+
 /// Least squares of the field's ten rows and of the distance to the particles' flow.
 Vec3 hybrid_velocity(const MetaballField& field, const Vec3& x) {
   const double radius = field.settings().radius;
-  const LocalFlow flow = local_flow(field, x);
+  const LocalFlow flow = with_significant_strain(local_flow(field, x));
   const SurfacePoint point(field.jet(x), field.settings());
   if (!point.defined || !flow.defined) return flow.velocity;
   const auto rows = affine_rows(point, field.moments(x), row_weights);
@@ -65,7 +77,7 @@ VelocityMethodInfo hybrid_velocity_info() {
   return {"hybrid",
           "The particles' own velocity, corrected by the field where the particles contradict each other: the best in "
           "a simulation.",
-          []() -> std::unique_ptr<VelocityMethod> { return std::make_unique<HybridVelocity>(); }};
+          []() -> std::unique_ptr<VelocityMethod> { return std::make_unique<HybridVelocity>(); }, true};
 }
 
 }  // namespace flowskin::tracking

@@ -28,7 +28,9 @@ struct AffineMotion {
   }
   static Gradient adjoint(const Vec3& force, const Vec3& d) {
     Gradient g;
-    g << d[0] * force, d[1] * force, d[2] * force;
+    for (int column = 0; column < 3; ++column) {
+      for (int row = 0; row < 3; ++row) g[row + 3 * column] = force[row] * d[column];
+    }
     return g;
   }
 };

@@ -11,6 +11,8 @@ namespace {
 /// Eigenvalue of the covariance (squared radii) below which the particles count as not spread along its direction.
 constexpr double least_spread = 1e-3;
 
+/// Particles that a linear flow always fits.
+constexpr int flow_unknowns = 4;
 /// Square of the share of the speed below which differences of velocity are rounding.
 constexpr double least_spread_of_speed = 1e-20;
 
@@ -76,16 +78,23 @@ LocalFlow local_flow(const MetaballField& field, const Vec3& x) {
     covariance += sample.weight * sample.offset * sample.offset.transpose();
     products += sample.weight * (sample.velocity - mean) * sample.offset.transpose();
   }
-  const Mat3 gradient = products * damped_inverse(covariance);  // per radius
+  const Mat3 inverse = damped_inverse(covariance);
+  const Mat3 gradient = products * inverse;  // per radius
   flow.velocity = mean - gradient * center;
   flow.gradient = gradient / field.settings().radius;
+  flow.center = center * field.settings().radius;
 
-  double rest = 0, spread = 0, all = 0;
+  double rest = 0, spread = 0, all = 0, weights2 = 0;
   for (const Sample& sample : samples) {
     rest += sample.weight * (sample.velocity - mean - gradient * sample.offset).squaredNorm();
+    weights2 += sample.weight * sample.weight;
     spread += sample.weight * (sample.velocity - mean).squaredNorm();
     all += sample.weight * sample.velocity.squaredNorm();
   }
+  // Of n samples with independent errors, n - 4 are left to show them.
+  const double freedom = 1.0 / std::max(1, flow.neighbors - flow_unknowns) * flow.neighbors;
+  flow.gradient_error2 =
+      freedom * rest * weights2 * inverse.trace() / (field.settings().radius * field.settings().radius);
   // Velocities that differ by rounding alone have no spread.
   if (spread > least_spread_of_speed * all) flow.misfit = std::min(1.0, std::sqrt(rest / spread));
   return flow;

@@ -9,6 +9,8 @@ namespace flowskin::tracking {
 struct LocalFlow {
   Vec3 velocity = Vec3::Zero();  ///< At x (m/s).
   Mat3 gradient = Mat3::Zero();  ///< gradient(i, j) = dv_i / dx_j (1/s)
+  Vec3 center = Vec3::Zero();    ///< Weighted mean of the particles' places, from x (m).
+  double gradient_error2 = 0;    ///< Expected |error|^2 of the gradient if the misfit is noise (1/s^2).
   double misfit = 0;             ///< Share of the velocities' spread that the linear flow leaves unexplained, 0 to 1:
                                  ///< root of sum w |v_i - fit|^2 / sum w |v_i - mean|^2. Zero where all are the same.
   int neighbors = 0;             ///< Particles nearer than the effective radius.

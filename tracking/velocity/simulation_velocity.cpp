@@ -33,7 +33,7 @@ class SimulationVelocity final : public VelocityMethod {
 
 VelocityMethodInfo simulation_velocity_info() {
   return {"simulation", "The particles' own velocity, by moving least squares: exact for every linear flow.",
-          []() -> std::unique_ptr<VelocityMethod> { return std::make_unique<SimulationVelocity>(); }};
+          []() -> std::unique_ptr<VelocityMethod> { return std::make_unique<SimulationVelocity>(); }, true};
 }
 
 }  // namespace flowskin::tracking

@@ -25,6 +25,7 @@ struct VelocityMethodInfo {
   std::string name;
   std::string summary;  ///< One sentence: what it assumes and when to use it.
   std::unique_ptr<VelocityMethod> (*create)();
+  bool uses_particle_velocities = false;  ///< Beyond what the field's time derivatives tell.
 };
 
 /// All methods, in the order of presentation.
