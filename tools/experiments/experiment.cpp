@@ -11,8 +11,11 @@
 namespace flowskin::tools {
 namespace {
 
-// The method shown as the best one, by preference: the first that is registered. Set it here.
+// The methods shown as the best ones: set them here.
+// For rigid bodies, by preference: the first that is registered.
 constexpr const char* kBestMethods[] = {"rigid-global", "curvature"};
+// For the stair flow: all that are registered. `affine` sees the field alone, `hybrid` the particles' velocities too.
+constexpr const char* kBestInFlow[] = {"affine", "hybrid"};
 
 constexpr int kQuickWidth = 160;  // pixels
 
@@ -76,6 +79,14 @@ std::string best_method() {
   for (const char* name : kBestMethods)
     if (std::find(names.begin(), names.end(), name) != names.end()) return name;
   return names.back();
+}
+
+std::vector<std::string> best_methods_in_flow() {
+  const std::vector<std::string> names = compared_methods();
+  std::vector<std::string> best;
+  for (const char* name : kBestInFlow)
+    if (std::find(names.begin(), names.end(), name) != names.end()) best.emplace_back(name);
+  return best;
 }
 
 }  // namespace flowskin::tools

@@ -39,11 +39,12 @@ struct ExperimentReport {
 
 /// What all experiments share.
 struct PaperRun {
-  std::filesystem::path scenes;      ///< Folder of the experiments' scene files.
-  std::filesystem::path out;         ///< Folder of the results.
-  bool quick = false;                ///< A reduced version for tests: fewer steps, revolutions and parameters.
-  std::vector<std::string> methods;  ///< Velocity methods compared, in the order of the registry.
-  std::string best;                  ///< The one shown beside the paper's.
+  std::filesystem::path scenes;           ///< Folder of the experiments' scene files.
+  std::filesystem::path out;              ///< Folder of the results.
+  bool quick = false;                     ///< A reduced version for tests: fewer steps, revolutions and parameters.
+  std::vector<std::string> methods;       ///< Velocity methods compared, in the order of the registry.
+  std::string best;                       ///< The one shown beside the paper's where only the field is given.
+  std::vector<std::string> best_in_flow;  ///< Those shown beside the paper's on the stairs.
 
   /// With a coarser mesh and small pictures where the run is quick.
   /// @throws scenes::SceneError where the file is missing or wrong.
@@ -61,6 +62,8 @@ struct PaperRun {
 std::vector<std::string> compared_methods();
 /// The method that stands for this project beside those of the paper.
 std::string best_method();
+/// The same in a simulated flow: the best that sees the field alone, and the best that knows the particles' velocities.
+std::vector<std::string> best_methods_in_flow();
 
 ExperimentReport translation_experiment(const PaperRun& run);  ///< Fig. 2
 ExperimentReport circling_experiment(const PaperRun& run);     ///< Figs. 4, 8, 9

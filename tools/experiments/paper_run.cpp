@@ -92,6 +92,7 @@ void run_paper(const PaperOptions& options) {
   run.quick = options.quick;
   run.methods = compared_methods();
   run.best = best_method();
+  run.best_in_flow = best_methods_in_flow();
   prepare(run.out);
   catch_interruptions();
   RunLog log(run.out / kLog, options.quiet);
