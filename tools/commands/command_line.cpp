@@ -33,6 +33,7 @@ struct Choice {
   RunOptions run;
   TrackOptions track;
   RenderOptions render;
+  PaperOptions paper;
   bool no_pictures = false, no_video = false;
   std::vector<std::filesystem::path> info_files;
   bool scene_defaults = false, scene_keys = false, methods_table = false;
@@ -130,6 +131,18 @@ CLI::App* add_render(CLI::App& app, Choice& choice) {
   return render;
 }
 
+CLI::App* add_paper(CLI::App& app, Choice& choice) {
+  PaperOptions& options = choice.paper;
+  CLI::App* paper = app.add_subcommand("paper", "Repeat the paper's experiments: tables, plots, pictures, verdicts");
+  paper->add_option("--out", options.out, "Folder of the results")->capture_default_str();
+  paper->add_option("--scenes", options.scenes, "Folder of the experiments' scenes (default: scenes/paper)");
+  paper->add_flag("--quick", options.quick, "A reduced version of some seconds");
+  paper->add_option("--threads", options.threads, "Threads (default: all); results but times do not depend on it")
+      ->check(CLI::Range(1, kMaxThreads));
+  paper->add_flag("--quiet", options.quiet, "Warnings and errors only");
+  return paper;
+}
+
 int run_choice(int argc, const char* const* argv) {
   CLI::App app{
       "A viscous SPH fluid simulator whose surface is a tracked mesh: textures flow with the fluid.\n"
@@ -143,9 +156,11 @@ int run_choice(int argc, const char* const* argv) {
   Choice choice;
   for (int i = 0; i < argc; ++i) choice.run.command_line += (i ? " " : "") + std::string(argv[i]);
   choice.track.run.command_line = choice.run.command_line;
+  choice.paper.command_line = choice.run.command_line;
   CLI::App* run = add_run(app, choice);
   CLI::App* track = add_track(app, choice);
   CLI::App* render = add_render(app, choice);
+  CLI::App* paper = add_paper(app, choice);
   CLI::App* info = app.add_subcommand("info", "Say what is in a mesh, particle or scene file, and whether it is sound");
   info->add_option("files", choice.info_files, "OBJ, PLY, particle (CSV, VTK, VTP) or scene files")->required();
   CLI::App* methods = app.add_subcommand("methods", "List the velocity methods and when to use which");
@@ -181,6 +196,7 @@ int run_choice(int argc, const char* const* argv) {
     choice.render.video = !choice.no_video;
     return render_command(choice.render);
   }
+  if (*paper) return paper_command(choice.paper);
   if (*info) return info_command(choice.info_files);
   if (*methods) return methods_command(choice.methods_table);
   return scene_command(choice.scene_defaults ? "defaults" : "keys");

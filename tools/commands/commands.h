@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "tools/experiments/paper_run.h"
 #include "tools/pipeline/run_options.h"
 
 namespace flowskin::tools {
@@ -45,6 +46,7 @@ int render_command(const RenderOptions& options);
 int info_command(const std::vector<std::filesystem::path>& files);
 /// `table`: their errors on the test flows as well.
 int methods_command(bool table);
+int paper_command(const PaperOptions& options);
 /// `what`: "defaults" or "keys" (as a Markdown table).
 int scene_command(const std::string& what);
 
