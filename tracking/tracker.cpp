@@ -111,7 +111,7 @@ class TrackerImpl {
       throw std::invalid_argument(
           "the velocity method \"" + settings_.velocity +
           "\" needs the particles' velocities, which are unknown here; choose a method that goes "
-          "by the field alone, such as curvature");
+          "by the field alone, such as affine");
     }
   }
 

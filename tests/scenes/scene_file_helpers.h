@@ -11,7 +11,8 @@
 namespace flowskin::scenes {
 
 inline const SceneVocabulary& test_vocabulary() {
-  static const SceneVocabulary vocabulary{{"auto", "normal", "total", "curvature", "curvature-belyaev"}};
+  static const SceneVocabulary vocabulary{{"auto", "normal", "total", "curvature", "curvature-belyaev", "rigid",
+                                           "rigid-global", "affine", "simulation", "hybrid"}};
   return vocabulary;
 }
 

@@ -26,7 +26,7 @@ tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
   settings.spacing = spacing;
   settings.field = tracking::default_field_settings(spacing, spec.radius);
   if (spec.threshold > 0) settings.field.threshold = spec.threshold;
-  settings.velocity = spec.velocity;
+  settings.velocity = spec.velocity == kAutomaticVelocity ? "hybrid" : spec.velocity;
   settings.integrator = spec.integrator == "euler" ? tracking::Integrator::euler
                         : spec.integrator == "rk4" ? tracking::Integrator::rk4
                                                    : tracking::Integrator::rk2;
