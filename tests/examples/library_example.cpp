@@ -24,7 +24,7 @@ int main() {
   };
   tracking::TrackerSettings settings;
   settings.spacing = setup.settings.spacing;
-  settings.velocity = "curvature";
+  settings.velocity = "hybrid";
   tracking::Tracker tracker(settings, particles());
 
   for (int frame = 1; frame <= 5; ++frame) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <vector>
 
@@ -103,10 +105,25 @@ TEST(MovingLeastSquares, LeavesOutTheGradientWhereParticlesDoNotSpread) {
     ASSERT_TRUE(found.defined) << c.name;
     Vec3 known = c.particles.front();  // the point's foot on what the particles span
     for (int axis = 0; axis < c.spread; ++axis) known[axis] = at[axis];
-    EXPECT_LT((found.velocity - flow(known)).norm(), 1e-8) << c.name;
-    Mat3 expected = gradient;
-    expected.rightCols(3 - c.spread).setZero();
+    Mat3 expected = Mat3::Zero();
+    for (int j = 0; j < c.spread; ++j) expected.col(j) = gradient.col(j);
+    for (int j = c.spread; j < 3; ++j) {
+      for (int i = 0; i < c.spread; ++i) expected(i, j) = -gradient(j, i);  // as if they turned
+    }
+    EXPECT_LT((found.velocity - flow(known) - expected * (at - known)).norm(), 1e-8) << c.name;
     EXPECT_LT((found.gradient - expected).norm(), 1e-8) << c.name;
+  }
+}
+
+TEST(MovingLeastSquares, ParticlesThatCircleEachOtherTurn) {
+  const auto spin = [](const Vec3& x) { return Vec3(Vec3(0, 0.3, 1).cross(x)); };
+  const std::vector<Vec3> pair = {{-0.3, 0, 0}, {0.3, 0, 0}};
+  const std::vector<Vec3> three = {{0.3, 0, 0}, {-0.15, 0.26, 0}, {-0.15, -0.26, 0}};
+  for (const auto& particles : {pair, three}) {
+    const MetaballField field = moving(particles, velocities_of(particles, spin), 1);
+    for (const Vec3& x : {Vec3(0.1, 0.3, 0.2), Vec3(-0.2, 0, 0.3)}) {
+      EXPECT_LT((local_flow(field, x).velocity - spin(x)).norm(), 1e-6);
+    }
   }
 }
 

@@ -89,7 +89,7 @@ CLI::App* add_track(CLI::App& app, Choice& choice) {
       ->excludes(rate);
   track->add_option("--frames", options.run.frames, "Number of frames after the first (default: all)")
       ->check(CLI::Range(1, 1000000));
-  track->add_option("--velocity", options.run.velocity, "Velocity method (default: curvature); see `flowskin methods`")
+  track->add_option("--velocity", options.run.velocity, "Velocity method (default: auto); see `flowskin methods`")
       ->check(CLI::IsMember(method_names()));
   track->add_flag("--no-ids", options.no_ids, "Do not match particles from file to file, neither by id nor by order");
   track->add_option("--texture", options.texture, "checker, marble or an image file (default: checker)");

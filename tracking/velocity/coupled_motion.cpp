@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -156,7 +157,7 @@ class CoupledSystem {
       }
     }
     std::vector<Vector> motions(part_count);
-    for (int c = 0; c < part_count; ++c) motions[c] = least_solution(parts[c].block, parts[c].right_side);
+    for (int c = 0; c < part_count; ++c) motions[c] = plainest_solution(parts[c].block, parts[c].right_side);
     Field start(count_);
     for (int v = 0; v < count_; ++v) {
       const Vector& motion = motions[component[v]];
@@ -168,12 +169,27 @@ class CoupledSystem {
     return start;
   }
 
-  static Vector least_solution(const Matrix& block, const Vector& right_side) {
+  // Of the motions that fit the field equally well (a ball may spin, a pair of particles may shear as well as turn) the
+  // one with the least strain, and of those the one with the least gradient.
+  static Vector plainest_solution(const Matrix& block, const Vector& right_side) {
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(block);
     const Vector& values = solver.eigenvalues();
-    Vector along = solver.eigenvectors().transpose() * right_side;
-    for (int k = 0; k < n; ++k) along[k] = values[k] > kLeast * values[n - 1] ? along[k] / values[k] : 0.0;
-    return solver.eigenvectors() * along;
+    const Vector along = solver.eigenvectors().transpose() * right_side;
+    Vector solution = Vector::Zero();
+    int free = 0;  // eigenvectors that the field does not see; eigenvalues ascend
+    for (int k = 0; k < n; ++k) {
+      if (values[k] > kLeast * values[n - 1]) {
+        solution += along[k] / values[k] * solver.eigenvectors().col(k);
+      } else {
+        ++free;
+      }
+    }
+    if (free == 0) return solution;
+    const Eigen::MatrixXd choices =
+        Motion::plainness() * solver.eigenvectors().leftCols(free).template bottomRows<Motion::parameters>();
+    const Eigen::VectorXd excess = Motion::plainness() * solution.template tail<Motion::parameters>();
+    const Eigen::VectorXd change = choices.completeOrthogonalDecomposition().solve(-excess);
+    return solution + solver.eigenvectors().leftCols(free) * change;
   }
 
   // Zero for ends in one place, and where one of them is nowhere near.

@@ -17,6 +17,8 @@ struct RigidMotion {
   static Vec3 apply(const Gradient& w, const Vec3& d) { return w.cross(d); }
   /// The parameters g with g . w = force . apply(w, d) for every w.
   static Gradient adjoint(const Vec3& force, const Vec3& d) { return d.cross(force); }
+  /// |plainness() w| is to be small where nothing else decides.
+  static Mat3 plainness() { return Mat3::Identity(); }
 };
 
 /// A motion y -> v + A (y - x); the parameters are the columns of A, one below the other.
@@ -32,6 +34,18 @@ struct AffineMotion {
       for (int row = 0; row < 3; ++row) g[row + 3 * column] = force[row] * d[column];
     }
     return g;
+  }
+  /// Strain counts, spin hardly.
+  static Eigen::Matrix<double, 9, 9> plainness() {
+    Eigen::Matrix<double, 9, 9> strain;
+    for (int column = 0; column < 3; ++column) {
+      for (int row = 0; row < 3; ++row) {
+        Mat3 e = Mat3::Zero();
+        e(row, column) = 1;
+        strain.col(row + 3 * column) = ((e + e.transpose()) / 2).reshaped();
+      }
+    }
+    return strain + 1e-4 * Eigen::Matrix<double, 9, 9>::Identity();
   }
 };
 

@@ -79,7 +79,11 @@ LocalFlow local_flow(const MetaballField& field, const Vec3& x) {
     products += sample.weight * (sample.velocity - mean) * sample.offset.transpose();
   }
   const Mat3 inverse = damped_inverse(covariance);
-  const Mat3 gradient = products * inverse;  // per radius
+  // Across the directions in which the particles spread, the flow is taken to turn along with them: an antisymmetric
+  // gradient, as far as it is free.
+  const Mat3 spanned = covariance * inverse;  // the projection on those directions
+  const Mat3 known = products * inverse;      // per radius
+  const Mat3 gradient = known - spanned * known.transpose() * (Mat3::Identity() - spanned);
   flow.velocity = mean - gradient * center;
   flow.gradient = gradient / field.settings().radius;
   flow.center = center * field.settings().radius;

@@ -19,8 +19,9 @@ struct LocalFlow {
 
 /// Moving least squares of first order [Lancaster and Salkauskas 1981] over the particles nearer than the effective
 /// radius, with the field's kernel u^3 as weight. Exact for every linear flow where the particles span space. Of a
-/// direction in which they do not spread (all in a plane, on a line, in one place) the gradient is left zero, smoothly:
-/// eigenvalues of their covariance below 1e-3 squared radii (a spread of 3 % of the radius) fade out. The misfit of
+/// direction in which they do not spread (all in a plane, on a line, in one place) the gradient is completed by
+/// antisymmetry, as if they turned without strain: two particles that circle each other turn, a single one does not.
+/// Eigenvalues of their covariance below 1e-3 squared radii (a spread of 3 % of the radius) fade out. The misfit of
 /// four particles or fewer says little, as a linear flow fits them in most cases. Never NaN; a field without velocities
 /// is at rest.
 LocalFlow local_flow(const MetaballField& field, const Vec3& x);

@@ -12,11 +12,11 @@ namespace flowskin::tracking {
 namespace {
 
 // Chosen by measurement, see docs/velocity_methods.md.
-constexpr RowWeights row_weights{100, 1, 0.3};
+constexpr RowWeights row_weights{3, 1, 0.3};
 constexpr double least_total_weight = 1e-4;  // of the total velocity's rows where the motion is rigid
 constexpr double total_weight = 3;           // more where it is not
 constexpr double damping_of_total = 1;       // as in total_tangential_velocity
-constexpr double spin_damping = 1e-6;        // a spin that nothing shows is zero
+constexpr double spin_damping = 1e-8;        // a spin that nothing shows is zero
 
 using Rows = MotionRows<RigidMotion>;
 using Motion = Eigen::Matrix<double, Rows::unknowns, 1>;
