@@ -45,7 +45,7 @@ struct Array {
 class VtpParser {
  public:
   VtpParser(std::string_view bytes, const std::string& name)
-      : bytes_(bytes), name_(name), head_(split_off_appended_data()), scanner_(head_, name) {}
+      : bytes_(bytes), head_(split_off_appended_data()), scanner_(head_, name) {}
 
   ParticleTable parse() {
     XmlTag tag;
@@ -239,7 +239,6 @@ class VtpParser {
   }
 
   std::string_view bytes_;
-  const std::string& name_;
   std::string_view appended_;
   bool has_appended_ = false, appended_base64_ = false;
   std::string_view head_;

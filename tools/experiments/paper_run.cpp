@@ -29,7 +29,7 @@ constexpr struct {
 } kExperiments[] = {
     {"translation", translation_experiment}, {"circling", circling_experiment}, {"ring", ring_experiment},
     {"springs", springs_experiment},         {"targets", targets_experiment},   {"convergence", convergence_experiment},
-    {"timing", timing_experiment},           {"stairs", stairs_experiment},
+    {"timing", timing_experiment},           {"weights", weights_experiment},   {"stairs", stairs_experiment},
 };
 
 // The folder of this program; empty where the system does not tell.

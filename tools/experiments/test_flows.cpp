@@ -125,12 +125,17 @@ FlowBody test_block() {
 }
 
 FlowErrors velocity_errors(const std::string& method, const FlowBody& body, double radius, const TestFlow& flow) {
+  return velocity_errors(*tracking::make_velocity_method(method), body, radius, flow);
+}
+
+FlowErrors velocity_errors(const tracking::VelocityMethod& method, const FlowBody& body, double radius,
+                           const TestFlow& flow) {
   const FieldSettings settings = tracking::default_field_settings(body.spacing, radius);
   const MetaballField field = field_at(body, settings, flow, 0);
   const auto surface = tracking::extract_surface(field, kEdge * body.spacing);
   const auto topology = tracking::build_topology(static_cast<int>(surface.positions.size()), surface.triangles);
   std::vector<Vec3> velocities;
-  tracking::make_velocity_method(method)->evaluate(field, topology, surface.positions, velocities);
+  method.evaluate(field, topology, surface.positions, velocities);
 
   std::vector<double> errors;
   double error2 = 0, speed2 = 0;

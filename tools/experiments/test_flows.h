@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tracking/mesh/surface_mesh.h"
+#include "tracking/velocity/velocity_method.h"
 
 namespace flowskin::tools {
 
@@ -42,6 +42,9 @@ struct FlowErrors {
 };
 
 /// @param radius effective radius of a particle, in spacings
+FlowErrors velocity_errors(const tracking::VelocityMethod& method, const FlowBody& body, double radius,
+                           const TestFlow& flow);
+/// The same for a method of the registry.
 FlowErrors velocity_errors(const std::string& method, const FlowBody& body, double radius, const TestFlow& flow);
 
 /// Mean distance (spacings) between the vertices, carried for one second in 20 steps of the midpoint rule with

@@ -1,4 +1,6 @@
 // The velocity by curvature invariance [FMM13, 3.2 and 3.3]: Kanatani's and Belyaev's form of K and H.
+#include "tracking/velocity/curvature_velocity.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -11,10 +13,7 @@
 namespace flowskin::tracking {
 namespace {
 
-// Chosen by measurement, see docs/velocity_methods.md.
-constexpr double least_total_weight = 3e-4;  // of the total velocity's rows where the motion is rigid
-constexpr double total_weight = 8;           // more where it is not
-constexpr double damping_of_total = 1;       // as in total_tangential_velocity
+constexpr double damping_of_total = 1;  // as in total_tangential_velocity
 
 /// The rows of K and H: how they change along the two tangents, and what is left to be made up for. K in 1/radius^2 and
 /// H in 1/radius make them comparable with each other and with the rows of the total velocity.
@@ -83,29 +82,37 @@ double unexplained_by_spin(const SurfacePoint& point, const Vec3& v) {
 template <class Change>
 class CurvatureVelocity final : public PointwiseVelocity {
  public:
+  explicit CurvatureVelocity(const CurvatureWeights& weights) : weights_(weights) {}
   Vec3 velocity(const SurfacePoint& point) const override {
     const Vec2 total = total_tangential_velocity(point, damping_of_total);
     const CurvatureRows rows = curvature_rows<Change>(point);
-    const Vec3 rigid = point.normal_velocity + point.tangents * solve(rows, total, least_total_weight);
-    const double weight = least_total_weight + total_weight * unexplained_by_spin(point, rigid);
+    const Vec3 rigid = point.normal_velocity + point.tangents * solve(rows, total, weights_.least);
+    const double weight = weights_.least + weights_.factor * unexplained_by_spin(point, rigid);
     return point.normal_velocity + point.tangents * solve(rows, total, weight);
   }
+
+ private:
+  CurvatureWeights weights_;
 };
 
 }  // namespace
+
+std::unique_ptr<VelocityMethod> make_curvature_velocity(const CurvatureWeights& weights) {
+  return std::make_unique<CurvatureVelocity<CurvatureChange>>(weights);
+}
 
 VelocityMethodInfo curvature_velocity_info() {
   return {
       "curvature",
       "Keeps Gaussian and mean curvature (Kanatani's form): sees rotation wherever curvature varies on the surface.",
-      []() -> std::unique_ptr<VelocityMethod> { return std::make_unique<CurvatureVelocity<CurvatureChange>>(); }};
+      []() -> std::unique_ptr<VelocityMethod> { return make_curvature_velocity({}); }};
 }
 
 VelocityMethodInfo curvature_belyaev_velocity_info() {
   return {"curvature-belyaev",
           "The same with Belyaev's form of the curvatures; equal to rounding, a check on the other.",
           []() -> std::unique_ptr<VelocityMethod> {
-            return std::make_unique<CurvatureVelocity<BelyaevCurvatureChange>>();
+            return std::make_unique<CurvatureVelocity<BelyaevCurvatureChange>>(CurvatureWeights{});
           }};
 }
 
