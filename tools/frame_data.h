@@ -26,7 +26,7 @@ struct SurfaceFrame {
   std::vector<Vec2f> vertex_uvs;                 ///< texture coordinates a vertex (no seams: see corner_uvs)
   std::vector<std::array<Vec2f, 3>> corner_uvs;  ///< texture coordinates a triangle corner
   std::vector<Vec2f> confidence;  ///< how well the field determines the velocity: weak, strong direction; or empty
-  std::string texture_file;  ///< image's name beside the written files, for PLY readers; may be empty
+  std::string texture_file;       ///< image's name beside the written files, for PLY readers; may be empty
 };
 
 /// Particles dressed for output.
