@@ -1,10 +1,7 @@
 #include "tools/report/compare_csv.h"
 
-#include <fmt/format.h>
-
-#include <iterator>
-
 #include "tools/io/atomic_file.h"
+#include "tools/report/csv_text.h"
 
 namespace flowskin::tools {
 namespace {
@@ -54,20 +51,7 @@ void for_each_column(const CompareRow& row, Visit visit) {
 }  // namespace
 
 void write_compare_csv(const std::filesystem::path& file, const std::vector<CompareRow>& rows) {
-  std::string text;
-  for_each_column(CompareRow{},
-                  [&](const char* name, const auto&) { text += fmt::format("{}{}", text.empty() ? "" : ",", name); });
-  text += '\n';
-  for (const CompareRow& row : rows) {
-    bool first = true;
-    for_each_column(row, [&](const char*, const auto& value) {
-      if (!first) text += ',';
-      first = false;
-      fmt::format_to(std::back_inserter(text), "{}", value);
-    });
-    text += '\n';
-  }
-  write_file(file, text);
+  write_file(file, csv_text(rows, [](const auto& row, const auto& visit) { for_each_column(row, visit); }));
 }
 
 }  // namespace flowskin::tools

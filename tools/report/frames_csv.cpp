@@ -1,11 +1,9 @@
 #include "tools/report/frames_csv.h"
 
-#include <fmt/format.h>
-
-#include <iterator>
 #include <string>
 
 #include "tools/io/atomic_file.h"
+#include "tools/report/csv_text.h"
 
 namespace flowskin::tools {
 
@@ -53,20 +51,7 @@ void for_each_column(const FrameRow& row, Visit visit) {
 }  // namespace
 
 void write_frames_csv(const std::filesystem::path& file, const std::vector<FrameRow>& rows) {
-  std::string text;
-  for_each_column(FrameRow{},
-                  [&](const char* name, auto) { text += fmt::format("{}{}", text.empty() ? "" : ",", name); });
-  text += '\n';
-  for (const FrameRow& row : rows) {
-    bool first = true;
-    for_each_column(row, [&](const char*, auto value) {
-      if (!first) text += ',';
-      first = false;
-      fmt::format_to(std::back_inserter(text), "{}", value);
-    });
-    text += '\n';
-  }
-  write_file(file, text);
+  write_file(file, csv_text(rows, [](const auto& row, const auto& visit) { for_each_column(row, visit); }));
 }
 
 }  // namespace flowskin::tools

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nanoflann.hpp>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "tracking/mesh/point_tree.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -54,23 +55,11 @@ std::vector<Vec3> moved(const Particles& particles, double duration) {
   return positions;
 }
 
-// Points for nanoflann.
-struct PointCloud {
-  const std::vector<Vec3>& points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t index, std::size_t axis) const { return points[index][static_cast<int>(axis)]; }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
 // How far nearly all points, of which only some are looked at where there are many, are from the nearest target.
 double distance_of_most(const std::vector<Vec3>& points, const std::vector<Vec3>& targets) {
   if (points.empty() || targets.empty()) return 0;
   const PointCloud cloud{targets};
-  const nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>, PointCloud, 3, int> tree(
-      3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+  const PointTree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
   std::vector<double> distances;
   const std::size_t stride = 1 + points.size() / most_samples;
   for (std::size_t i = 0; i < points.size(); i += stride) {

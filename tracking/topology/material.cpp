@@ -3,9 +3,9 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
-#include <nanoflann.hpp>
 
 #include "tracking/mesh/closest_point.h"
+#include "tracking/mesh/point_tree.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -13,19 +13,6 @@ namespace {
 constexpr double kSameSide = 0.3;         // cosine between a new vertex's normal and the old triangle's
 constexpr double kForeign = 2.0;          // particles whose rest positions are this many radii from the nearest's
 constexpr double kRegularization = 1e-6;  // of the moment matrix; keeps planar neighbourhoods solvable
-
-// Points for nanoflann.
-struct PointCloud {
-  const std::vector<Vec3>& points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t index, std::size_t axis) const { return points[index][static_cast<int>(axis)]; }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using PointTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>, PointCloud, 3, int>;
 
 // Nearest point of `targets` for each query, -1 where none is within reach.
 std::vector<int> nearest(const std::vector<Vec3>& targets, const std::vector<Vec3>& queries, double reach) {
