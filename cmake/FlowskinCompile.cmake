@@ -12,6 +12,11 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
 endif()
 if(FLOWSKIN_NATIVE)
   target_compile_options(flowskin_compile INTERFACE -march=native)
+  # The loops are written for vectors of eight floats. With AVX-512, g++ 12 warns of its own intrinsics (GCC bug 105593), and
+  # results would differ between processors with it and those with AVX2 only.
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_compile_options(flowskin_compile INTERFACE -mno-avx512f)
+  endif()
 endif()
 if(FLOWSKIN_WERROR)
   target_compile_options(flowskin_compile INTERFACE -Werror)
