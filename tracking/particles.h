@@ -19,7 +19,10 @@ struct Particles {
   std::vector<Vec3> velocities;      ///< m/s; empty: unknown
   std::vector<Vec3> rest_positions;  ///< Place of the material in the first frame (m); empty: unknown.
   std::vector<double> weights{};     ///< Share of each in the field; empty: 1 each.
-  bool has_lasting_ids = true;       ///< An id names the same particle in the next state; false: it only counts.
+  /// Places of the material at other times (m), those that SurfaceMesh::layers stand for, in the same order: one entry
+  /// a particle each, or none: unknown.
+  std::vector<std::vector<Vec3>> layers{};
+  bool has_lasting_ids = true;  ///< An id names the same particle in the next state; false: it only counts.
 };
 
 }  // namespace flowskin::tracking

@@ -15,18 +15,19 @@
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/topology.h"
 #include "tracking/remeshing/remesh.h"
-#include "tracking/topology/guard.h"
+#include "tracking/topology/change_topology.h"
 #include "tracking/topology/material.h"
-#include "tracking/topology/small_parts.h"
 
 namespace flowskin::tracking {
 namespace {
 
 constexpr double kDefaultEdgeInSpacings = 0.75;
 constexpr int kMostSubsteps = 1000;
-constexpr int kUntanglingRounds = 4;
 constexpr double kLongestJump = 4;  // of a particle between two states, in effective radii
-constexpr double kFarReach = 2;     // of old material where particles know none, in effective radii
+constexpr int kRemeshingPasses = 3;
+constexpr int kFewIn = 50;                  // one operation in so many vertices is few: another pass is not worth it
+constexpr double kDisagreementDepth = 0.3;  // of an edge length
+constexpr double kFarReach = 2;             // of old material where particles know none, in effective radii
 
 // Adds the time until its end to a sum.
 class Stopwatch {
@@ -54,6 +55,8 @@ TrackerSettings filled_in(TrackerSettings settings) {
           "positive (m), or 0 for 0.75 spacings");
   require(settings.max_motion > 0, "max_motion", settings.max_motion, "positive (effective radii)");
   require(settings.fairing_iterations >= 0, "fairing_iterations", settings.fairing_iterations, "0 or more");
+  require(std::isfinite(settings.max_slip) && settings.max_slip >= 0, "max_slip", settings.max_slip,
+          "positive (m), or 0 for no limit");
   require(settings.fairing_stiffness >= 0 && settings.fairing_stiffness <= 1, "fairing_stiffness",
           settings.fairing_stiffness, "from 0 to 1");
   if (settings.field.radius == 0) settings.field = default_field_settings(settings.spacing);
@@ -63,12 +66,6 @@ TrackerSettings filled_in(TrackerSettings settings) {
   require(settings.field.weight > 0, "field.weight", settings.field.weight, "positive");
   if (settings.edge_length == 0) settings.edge_length = kDefaultEdgeInSpacings * settings.spacing;
   return settings;
-}
-
-// What was tolerated, as far as it is still there.
-MeshDefects at_most(const MeshDefects& a, const MeshDefects& b) {
-  return {std::min(a.off_vertices, b.off_vertices), std::min(a.bad_triangles, b.bad_triangles),
-          std::min(a.long_edges, b.long_edges), std::min(a.off_triangles, b.off_triangles)};
 }
 
 }  // namespace
@@ -92,9 +89,22 @@ class TrackerImpl {
     } else {
       advect(particles);
       Projection projection = fair_and_project();
-      if (settings_.guard) guard(std::move(projection));
+      follow_topology(projection);
+      if (settings_.max_slip > 0 && !particles_.rest_positions.empty()) {
+        Stopwatch watch(report_.seconds_topology);
+        report_.held_back = limit_slip(settings_.max_slip, *field_, particles_, mesh_);
+      }
     }
     finish();
+  }
+
+  void begin_layer() { mesh_.layers.push_back(mesh_.positions); }
+
+  void drop_layer(std::size_t layer) {
+    if (layer >= mesh_.layers.size())
+      throw std::out_of_range("the tracked mesh has " + std::to_string(mesh_.layers.size()) + " layer(s), not one " +
+                              std::to_string(layer));
+    mesh_.layers.erase(mesh_.layers.begin() + static_cast<std::ptrdiff_t>(layer));
   }
 
   std::vector<Confidence> confidence() const {
@@ -122,39 +132,39 @@ class TrackerImpl {
 
   SurfaceGeometry extract_raw() const { return extract_raw_surface(*field_, settings_.edge_length); }
 
-  GuardSettings guard_settings() const {
-    return default_guard(settings_.spacing, settings_.edge_length, settings_.field);
-  }
-
-  // Makes the raw surface the tracked mesh; it takes its material from the old mesh and the particles.
-  void adopt(const SurfaceGeometry& raw) {
-    const SurfaceGeometry geometry = improve_surface(*field_, settings_.edge_length, raw);
-    std::vector<Vec3> positions = geometry.positions;
-    const Projection projection = project_to_surface(*field_, default_projection(settings_.field), positions);
+  MaterialSettings material_settings() const {
     MaterialSettings material;
     material.reach = settings_.edge_length;
     material.same_vertex = settings_.edge_length / 3;
     material.far_reach = kFarReach * settings_.field.radius;
-    mesh_ = carry_material(mesh_, geometry, projection.normals, *field_, particles_, material);
+    return material;
+  }
+
+  // Makes the raw surface the tracked mesh; it takes its material from the old mesh and the particles.
+  Projection adopt(const SurfaceGeometry& raw) {
+    const SurfaceGeometry geometry = improve_surface(*field_, settings_.edge_length, raw);
+    std::vector<Vec3> positions = geometry.positions;
+    const Projection projection = project_to_surface(*field_, default_projection(settings_.field), positions);
+    mesh_ = carry_material(mesh_, geometry, projection.normals, *field_, particles_, material_settings());
     topology_ = build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
     rest_lengths_ = edge_lengths(topology_, mesh_.positions);
-    tolerated_ = find_defects(*field_, mesh_.positions, mesh_.triangles, topology_, projection, guard_settings());
     velocities_known_ = false;
+    return projection;
   }
 
   // There was no surface before, or there are no particles now.
   void restart(const Particles& particles) {
-    Stopwatch watch(report_.seconds_guard);
+    Stopwatch watch(report_.seconds_topology);
     particles_ = particles;
     rebuild_field();
     const bool had_surface = !mesh_.positions.empty();
-    const std::uint64_t next_id = mesh_.next_id;
-    mesh_ = {};
-    mesh_.next_id = next_id;
+    SurfaceMesh empty;
+    empty.next_id = mesh_.next_id;
+    empty.layers.resize(mesh_.layers.size());
+    mesh_ = std::move(empty);
     if (field_) adopt(extract_raw());
     const bool has_surface = !mesh_.positions.empty();
-    report_.reextracted = had_surface || has_surface;
-    if (report_.reextracted) report_.reason = has_surface ? "a surface appeared" : "the surface vanished";
+    if (had_surface != has_surface) report_.reason = has_surface ? "a surface appeared" : "the surface vanished";
   }
 
   // Carries the vertices to the time of the new particles, in substeps.
@@ -210,23 +220,7 @@ class TrackerImpl {
     }
     Stopwatch watch(report_.seconds_fairing);
     repair(*field_, default_projection(settings_.field), topology_, mesh_.triangles, mesh_.positions, projection);
-    if (settings_.remeshing) untangle(projection);
     return projection;
-  }
-
-  // Where relaxing a tangle does not help, its edges are collapsed.
-  void untangle(Projection& projection) {
-    for (int round = 0; round < kUntanglingRounds; ++round) {
-      const std::vector<int> bad = bad_triangles(mesh_.positions, mesh_.triangles, topology_, projection.normals);
-      if (bad.empty()) return;
-      const std::vector<std::uint64_t> old_ids = mesh_.ids;
-      const int collapses = collapse_triangles(bad, projection.normals, 2 * settings_.edge_length, mesh_);
-      if (collapses == 0) return;
-      report_.collapses += collapses;
-      update_topology(old_ids);
-      projection = project_to_surface(*field_, default_projection(settings_.field), mesh_.positions);
-      repair(*field_, default_projection(settings_.field), topology_, mesh_.triangles, mesh_.positions, projection);
-    }
   }
 
   // After a change of the triangles; the springs of edges that stay keep their rest lengths.
@@ -241,41 +235,44 @@ class TrackerImpl {
     const std::vector<std::uint64_t> old_ids = mesh_.ids;
     RemeshSettings limits;
     limits.edge_length = settings_.edge_length;
-    const RemeshReport done = remesh(*field_, limits, mesh_);
-    report_.splits = done.splits;
-    report_.collapses = done.collapses;
-    report_.flips = done.flips;
-    if (done.changed()) update_topology(old_ids);
-  }
-
-  // A small part that is spoilt is no reason to replace the whole mesh.
-  void drop_parts(Projection& projection) {
-    const std::vector<std::uint64_t> old_ids = mesh_.ids;
-    const std::vector<int> bad = bad_triangles(mesh_.positions, mesh_.triangles, topology_, projection.normals);
-    if (!drop_spoilt_parts(projection, bad, guard_settings().small_volume, mesh_)) return;
-    update_topology(old_ids);
-    projection = project_to_surface(*field_, default_projection(settings_.field), mesh_.positions);
-  }
-
-  // Replaces a mesh that does not fit the field any more.
-  void guard(Projection projection) {
-    Stopwatch watch(report_.seconds_guard);
-    drop_parts(projection);
-    const SurfaceGeometry raw = extract_raw();
-    const MeshDefects defects =
-        find_defects(*field_, mesh_.positions, mesh_.triangles, topology_, projection, guard_settings());
-    const GuardVerdict verdict = inspect(raw, mesh_.positions, mesh_.triangles, defects, tolerated_, guard_settings());
-    report_.expected_components = verdict.expected_components;
-    report_.expected_volume = verdict.expected_volume;
-    if (verdict.reasons.empty()) {
-      tolerated_ = at_most(tolerated_, defects);
-      return;
+    const auto few = static_cast<int>(mesh_.positions.size()) / kFewIn;
+    for (int pass = 0; pass < kRemeshingPasses; ++pass) {
+      const RemeshReport done = remesh(*field_, limits, mesh_);
+      report_.splits += done.splits;
+      report_.collapses += done.collapses;
+      report_.flips += done.flips;
+      if (done.splits + done.collapses + done.flips <= few) break;
     }
+    if (report_.splits + report_.collapses + report_.flips > 0) update_topology(old_ids);
+  }
+
+  // Follows merging, splitting, appearing and vanishing: replaces the regions where mesh and field disagree; and the
+  // whole mesh, as a last resort, where that does not work.
+  void follow_topology(Projection& projection) {
+    if (!settings_.topology && !settings_.guard) return;
+    Stopwatch watch(report_.seconds_topology);
+    const TopologyReport done = change_regions(projection);
+    report_.regions = done.regions;
+    report_.born = done.born;
+    tolerated_ = std::min(tolerated_, done.stubborn);
+    if (!settings_.guard || done.stubborn <= tolerated_) return;
     report_.reextracted = true;
-    for (const std::string& reason : verdict.reasons) {
-      report_.reason += (report_.reason.empty() ? "" : "; ") + reason;
-    }
-    adopt(raw);
+    report_.reason = std::to_string(done.stubborn) + " region(s): " + done.why;
+    projection = adopt(extract_raw());
+    // What a fresh mesh does not get right either is let pass as long as it is there.
+    tolerated_ = change_regions(projection).stubborn;
+  }
+
+  TopologyReport change_regions(Projection& projection) {
+    const std::vector<std::uint64_t> old_ids = mesh_.ids;
+    TopologySettings limits;
+    limits.edge_length = settings_.edge_length;
+    limits.depth = kDisagreementDepth * settings_.edge_length;
+    limits.local = settings_.topology;
+    limits.material = material_settings();
+    const TopologyReport done = change_topology(*field_, particles_, limits, mesh_, projection);
+    if (done.changed()) update_topology(old_ids);
+    return done;
   }
 
   // Velocities at the vertices, and the measures of the mesh as it is now.
@@ -289,21 +286,7 @@ class TrackerImpl {
     report_.components = components.count;
     report_.volume = mesh_volume(mesh_.positions, mesh_.triangles);
     report_.area = mesh_area(mesh_.positions, mesh_.triangles);
-    report_.max_distance = largest_distance();
-    // Without a comparison of its own, the mesh is a fresh extraction itself.
-    if (report_.expected_components == 0) {
-      report_.expected_components = report_.components;
-      report_.expected_volume = report_.volume;
-    }
-  }
-
-  double largest_distance() const {
-    double largest = 0;
-#pragma omp parallel for reduction(max : largest) schedule(static)
-    for (int v = 0; v < static_cast<int>(mesh_.positions.size()); ++v) {
-      largest = std::max(largest, surface_distance(*field_, mesh_.positions[v]).distance);
-    }
-    return largest;
+    report_.max_distance = field_ ? largest_distance(*field_, mesh_.positions) : 0;
   }
 
   TrackerSettings settings_;
@@ -313,7 +296,7 @@ class TrackerImpl {
   SurfaceMesh mesh_;
   MeshTopology topology_;
   std::vector<double> rest_lengths_;  // of the springs [FMM13, 3.4], one an edge
-  MeshDefects tolerated_;             // since the mesh was extracted
+  int tolerated_ = 0;                 // regions that a fresh mesh did not get right either
   bool velocities_known_ = false;     // mesh_.velocities are the method's, at the time of particles_
   TrackerReport report_;
 };
@@ -325,6 +308,8 @@ Tracker::Tracker(Tracker&&) noexcept = default;
 Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 
 void Tracker::advance(const Particles& particles) { impl_->advance(particles); }
+void Tracker::begin_layer() { impl_->begin_layer(); }
+void Tracker::drop_layer(std::size_t layer) { impl_->drop_layer(layer); }
 std::vector<Confidence> Tracker::confidence() const { return impl_->confidence(); }
 const SurfaceMesh& Tracker::mesh() const { return impl_->mesh(); }
 const TrackerReport& Tracker::report() const { return impl_->report(); }

@@ -1,4 +1,4 @@
-// Carries a surface mesh along with the particles: advection, projection, fairing, and the guard.
+// Carries a surface mesh along with the particles: advection, projection, fairing, remeshing, topology.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,9 @@ struct TrackerSettings {
   double fairing_stiffness = 0.3;  ///< Share of the way to the spring equilibrium an iteration goes, 0 to 1.
   bool variable_springs = false;   ///< Fairing is soft where the field determines the velocity well.
   bool remeshing = true;           ///< Split, collapse and flip edges of a stretching mesh; false: as in the paper.
-  bool guard = true;               ///< Replace a mesh that no longer fits the field by a fresh extraction.
+  double max_slip = 0;   ///< The texture slips off the particles' material by at most this (m); 0: any distance.
+  bool topology = true;  ///< Replace the regions where mesh and field disagree.
+  bool guard = true;     ///< Replace the whole mesh where that of regions is off, or does not work.
 };
 
 /// What happened in the last call of Tracker::advance, and how well the mesh fits now.
@@ -36,13 +38,14 @@ struct TrackerReport {
   bool reextracted = false;  ///< The guard replaced the mesh.
   std::string reason;        ///< Why, in words; empty where it did not.
   int splits = 0, collapses = 0, flips = 0;  ///< Of the remeshing.
+  int regions = 0;                           ///< Replaced where mesh and field disagreed.
+  int held_back = 0;                         ///< Vertices whose rest position was held back by max_slip.
+  int born = 0;                              ///< Vertices of the replaced regions that are new.
   int components = 0;                        ///< Of the mesh.
-  int expected_components = 0;               ///< Of a fresh extraction.
   double volume = 0;                         ///< m^3
-  double expected_volume = 0;                ///< Of a fresh extraction (m^3).
   double area = 0;                           ///< m^2
   double max_distance = 0;                   ///< Largest |f| / |grad f| at the vertices (m).
-  double seconds_velocity = 0, seconds_projection = 0, seconds_fairing = 0, seconds_guard = 0;
+  double seconds_velocity = 0, seconds_projection = 0, seconds_fairing = 0, seconds_topology = 0;
 };
 
 class TrackerImpl;
@@ -61,6 +64,11 @@ class Tracker {
   /// Carries the mesh from the particles of the last call (or of the constructor) to these. Where their velocities are
   /// unknown or their ids do not last, docs/track.md says what is exact and what is not.
   void advance(const Particles& particles);
+
+  /// Adds a layer to the mesh: the places where its vertices are now. Particles given from now on should bring theirs.
+  void begin_layer();
+  /// @throws std::out_of_range where there is no such layer.
+  void drop_layer(std::size_t layer);
 
   const SurfaceMesh& mesh() const;
   /// How well the field alone determines the tangential velocity of each vertex, now. Worked out anew by each call.

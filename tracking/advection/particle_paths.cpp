@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tracking/mesh/point_tree.h"
+#include "tracking/quantile.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -15,14 +16,6 @@ namespace {
 constexpr double jump_in_usual_paths = 8;
 constexpr std::size_t most_samples = 20000;
 constexpr double most_share = 0.998;
-
-// The value below which a share of the values lie; 0 where there are none.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
 
 // How far nine in ten particles of both states move at most.
 double usual_path(const Particles& from, const Particles& to) {
@@ -85,6 +78,14 @@ void check_particles(const Particles& particles) {
          std::to_string(count) + ", " + std::to_string(particles.positions.size()) + ", " +
          std::to_string(particles.velocities.size()) + ", " + std::to_string(particles.rest_positions.size()) +
          "; weights " + std::to_string(particles.weights.size()));
+  }
+  for (const std::vector<Vec3>& layer : particles.layers) {
+    if (!fits(layer.size()))
+      fail("a layer must have one entry a particle, but has " + std::to_string(layer.size()) + " for " +
+           std::to_string(count));
+    for (std::size_t i = 0; i < layer.size(); ++i)
+      if (!layer[i].allFinite())
+        fail("the particle with id " + std::to_string(particles.ids[i]) + " has a place in a layer that is not finite");
   }
   const auto finite = [](const std::vector<Vec3>& vectors, std::size_t i) {
     return vectors.empty() || vectors[i].allFinite();
@@ -153,22 +154,30 @@ void ParticlePaths::at(double time, std::vector<Vec3>& positions, std::vector<Ve
   positions.clear();
   velocities.clear();
   const double duration = end_ - begin_;
-  const bool at_end = time == end_;
-  const double s = at_end ? 1 : (time - begin_) / duration;
-  for (const Path& path : paths_) {
-    if (at_end) {
+  const double s = time == end_ ? 1 : (time - begin_) / duration;
+  if (time == end_) {
+    for (const Path& path : paths_) {
       if (path.ends) continue;
       positions.push_back(path.x1);
       velocities.push_back(path.v1);
-    } else if (s == 0) {
-      positions.push_back(path.x0);
-      velocities.push_back(path.v0);
-    } else {
-      const Vec3 chord = path.x1 - path.x0;
-      const Vec3 m0 = duration * path.v0, m1 = duration * path.v1;
-      positions.push_back(path.x0 + s * s * (3 - 2 * s) * chord + s * (s - 1) * (s - 1) * m0 + s * s * (s - 1) * m1);
-      velocities.push_back((6 * s * (1 - s) * chord + (s - 1) * (3 * s - 1) * m0 + s * (3 * s - 2) * m1) / duration);
     }
+    return;
+  }
+  positions.resize(paths_.size());
+  velocities.resize(paths_.size());
+  const auto count = static_cast<std::ptrdiff_t>(paths_.size());
+#pragma omp parallel for schedule(static) if (count > 10000)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const Path& path = paths_[i];
+    if (s == 0) {
+      positions[i] = path.x0;
+      velocities[i] = path.v0;
+      continue;
+    }
+    const Vec3 chord = path.x1 - path.x0;
+    const Vec3 m0 = duration * path.v0, m1 = duration * path.v1;
+    positions[i] = path.x0 + s * s * (3 - 2 * s) * chord + s * (s - 1) * (s - 1) * m0 + s * s * (s - 1) * m1;
+    velocities[i] = (6 * s * (1 - s) * chord + (s - 1) * (3 * s - 1) * m0 + s * (3 * s - 2) * m1) / duration;
   }
 }
 

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace flowskin::tracking {
 namespace {
 
 constexpr int kHalvings = 6;
+constexpr double kUsualSlack = 0.1;  // effective radii
 // Below this gradient (in units of weight / radius) the field is silent: the direction to the surface is noise.
 constexpr double kSilentGradient = 1e-9;
 
@@ -22,23 +24,15 @@ SurfaceDistance describe(double f, const Vec3& gradient, const FieldSettings& se
   return point;
 }
 
-}  // namespace
-
-ProjectionSettings default_projection(const FieldSettings& field) {
-  ProjectionSettings settings;
-  settings.tolerance = 1e-7 * field.radius;
-  settings.max_step = 0.25 * field.radius;
-  settings.max_distance = field.radius;
-  return settings;
-}
-
-SurfaceDistance surface_distance(const MetaballField& field, const Vec3& x) {
+template <class Field>
+SurfaceDistance distance_at(const Field& field, const Vec3& x) {
   Vec3 gradient = Vec3::Zero();
   const double f = field.value(x, gradient);
   return describe(f, gradient, field.settings());
 }
 
-bool project_point(const MetaballField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point) {
+template <class Field>
+bool project(const Field& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point) {
   Vec3 gradient = Vec3::Zero();
   Vec3 current = x;
   double f = field.value(current, gradient);
@@ -67,25 +61,66 @@ bool project_point(const MetaballField& field, const ProjectionSettings& setting
   return false;
 }
 
+}  // namespace
+
+ProjectionSettings default_projection(const FieldSettings& field) {
+  ProjectionSettings settings;
+  settings.tolerance = 1e-7 * field.radius;
+  settings.max_step = 0.25 * field.radius;
+  settings.max_distance = field.radius;
+  return settings;
+}
+
+SurfaceDistance surface_distance(const MetaballField& field, const Vec3& x) { return distance_at(field, x); }
+SurfaceDistance surface_distance(const LocalField& field, const Vec3& x) { return distance_at(field, x); }
+
+double largest_distance(const MetaballField& field, const std::vector<Vec3>& points) {
+  std::vector<double> distances(points.size());
+  Neighborhoods(field, points).for_each([&](int i, const LocalField& local) {
+    distances[i] = distance_at(local, points[i]).distance;
+  });
+  return distances.empty() ? 0 : *std::max_element(distances.begin(), distances.end());
+}
+
+bool project_point(const MetaballField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point) {
+  return project(field, settings, x, point);
+}
+
+bool project_point(const LocalField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point) {
+  return project(field, settings, x, point);
+}
+
+double usual_slack(const FieldSettings& field) { return kUsualSlack * field.radius; }
+
 Projection project_to_surface(const MetaballField& field, const ProjectionSettings& settings,
                               std::vector<Vec3>& positions) {
-  const int count = static_cast<int>(positions.size());
   Projection result;
-  result.normals.resize(count);
-  std::vector<double> distances(count);
-  std::vector<char> reached(count);
-#pragma omp parallel for schedule(dynamic, 256)
-  for (int v = 0; v < count; ++v) {
-    SurfaceDistance point;
-    reached[v] = project_point(field, settings, positions[v], point);
-    result.normals[v] = point.normal;
-    distances[v] = point.distance;
-  }
-  for (int v = 0; v < count; ++v) {
-    result.max_distance = std::max(result.max_distance, distances[v]);
-    if (!reached[v]) result.failed.push_back(v);
-  }
+  result.normals.resize(positions.size());
+  result.distances.resize(positions.size());
+  std::vector<int> all(positions.size());
+  std::iota(all.begin(), all.end(), 0);
+  project_moved(field, settings, all, positions, result);
   return result;
+}
+
+void project_moved(const MetaballField& field, const ProjectionSettings& settings, const std::vector<int>& moved,
+                   std::vector<Vec3>& positions, Projection& projection) {
+  std::vector<Vec3> starts(moved.size());
+  for (std::size_t i = 0; i < moved.size(); ++i) starts[i] = positions[moved[i]];
+  std::vector<char> reached(moved.size());
+  Neighborhoods(field, starts, usual_slack(field.settings())).for_each([&](int i, const LocalField& local) {
+    const int v = moved[i];
+    SurfaceDistance point;
+    reached[i] = project(local, settings, positions[v], point);
+    projection.normals[v] = point.normal;
+    projection.distances[v] = point.distance;
+  });
+  projection.failed.clear();
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (!reached[i]) projection.failed.push_back(moved[i]);
+  }
+  const auto largest = std::max_element(projection.distances.begin(), projection.distances.end());
+  projection.max_distance = largest != projection.distances.end() ? *largest : 0;
 }
 
 }  // namespace flowskin::tracking

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tracking/field/metaball_field.h"
+#include "tracking/field/neighborhoods.h"
 
 namespace flowskin::tracking {
 
@@ -25,21 +26,34 @@ struct SurfaceDistance {
 
 /// |f| / |grad f| and the normal at a point.
 SurfaceDistance surface_distance(const MetaballField& field, const Vec3& x);
+SurfaceDistance surface_distance(const LocalField& field, const Vec3& x);
+/// The largest |f| / |grad f| at these points (m); 0 where there are none.
+double largest_distance(const MetaballField& field, const std::vector<Vec3>& points);
 
 /// Newton's iteration x - f grad f / |grad f|^2 with limited steps, halved while they do not bring |f| down. Where it
 /// fails (silent field, no progress, too far) x is left at its start.
 /// @return false where it failed; `point` describes the place where x is in the end.
 bool project_point(const MetaballField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point);
+bool project_point(const LocalField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point);
+
+/// How far around its start a vertex that is moved along the surface usually stays (m): a slack for Neighborhoods.
+double usual_slack(const FieldSettings& field);
 
 /// What became of all vertices.
 struct Projection {
-  std::vector<Vec3> normals;  ///< Outward, one a vertex.
-  std::vector<int> failed;    ///< Vertices that are not on the surface, ascending.
-  double max_distance = 0;    ///< Largest |f| / |grad f| (m), the failed ones included.
+  std::vector<Vec3> normals;      ///< Outward, one a vertex.
+  std::vector<double> distances;  ///< |f| / |grad f| (m), one a vertex.
+  std::vector<int> failed;        ///< Vertices that are not on the surface, ascending.
+  double max_distance = 0;        ///< The largest of the distances (m).
 };
 
 /// project_point for every vertex.
 Projection project_to_surface(const MetaballField& field, const ProjectionSettings& settings,
                               std::vector<Vec3>& positions);
+
+/// Brings a projection up to date where only some vertices have moved since.
+/// @param moved the numbers of all vertices that have moved or failed
+void project_moved(const MetaballField& field, const ProjectionSettings& settings, const std::vector<int>& moved,
+                   std::vector<Vec3>& positions, Projection& projection);
 
 }  // namespace flowskin::tracking

@@ -4,21 +4,19 @@
 #include <cmath>
 
 #include "tracking/advection/projection.h"
+#include "tracking/extraction/improvement_limits.h"
 #include "tracking/fairing/relaxation.h"
+#include "tracking/mesh/edges_by_length.h"
 #include "tracking/mesh/editable_mesh.h"
 #include "tracking/mesh/mesh_measures.h"
 
 namespace flowskin::tracking {
 namespace {
 
-// In units of the wanted edge length.
-constexpr double kShortEdge = 0.5;
-constexpr double kLongEdge = 1.5;
-constexpr double kLargestCollapse = 0.005;  // volume a collapse may cost, in cubes of the longest edge
+using namespace improvement;
+
 constexpr int kCollapsePasses = 4;
 constexpr int kFlipPasses = 3;
-constexpr int kRounds = 4;
-constexpr int kRelaxationsPerRound = 2;
 constexpr double kLargestVolumeChange = 0.05;
 
 MeshTopology topology_of(const SurfaceGeometry& surface) {
@@ -28,13 +26,8 @@ MeshTopology topology_of(const SurfaceGeometry& surface) {
 // Collapses edges below the limit, the shortest first. Returns how many.
 int collapse_short_edges(double shortest, double longest, SurfaceGeometry& surface) {
   const MeshTopology topology = topology_of(surface);
-  const std::vector<double> lengths = edge_lengths(topology, surface.positions);
-  std::vector<int> order;
-  for (int e = 0; e < static_cast<int>(lengths.size()); ++e) {
-    if (lengths[e] < shortest) order.push_back(e);
-  }
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return lengths[a] != lengths[b] ? lengths[a] < lengths[b] : a < b; });
+  const std::vector<int> order = edges_by_length(topology, surface.positions, EdgeOrder::shortest_first,
+                                                 [&](int, double length) { return length < shortest; });
   const double volume = kLargestCollapse * longest * longest * longest;
   EditableMesh mesh(surface.positions, surface.triangles);
   int count = 0;

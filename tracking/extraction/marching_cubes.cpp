@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "tracking/extraction/marching_cubes_tables.h"
 
@@ -45,6 +47,18 @@ double root_on_edge(const Vec3& a, const Vec3& b, double fa, double fb, const Sc
     if (std::abs(t - previous) < kRootTolerance) break;
   }
   return t;
+}
+
+// The vertex on the grid edge from a node along an axis; f and g are the values at its ends.
+Vec3 vertex_on_edge(const SparseGrid& grid, SparseGrid::Index node, int axis, double f, double g,
+                    const ScalarFunction& field) {
+  const Vec3 low = grid.position(node);
+  ++node[axis];
+  const Vec3 high = grid.position(node);
+  const double root = root_on_edge(low, high, f, g, field);
+  // The clamp also catches a root that rounding made NaN.
+  const double t = root > kNodeClearance ? std::min(root, 1 - kNodeClearance) : kNodeClearance;
+  return low + t * (high - low);
 }
 
 class Marcher {
@@ -118,16 +132,10 @@ class Marcher {
     const SparseGrid::Index& place = grid_.blocks()[b].place;
     SparseGrid::Index index{};
     for (int a = 0; a < 3; ++a) index[a] = kSide * place[a] + local[a];
-    const Vec3 low = grid_.position(index);
-    ++index[axis];
-    const Vec3 high = grid_.position(index);
-    const double root = root_on_edge(low, high, f, g, field_);
-    // The clamp also catches a root that rounding made NaN.
-    const double t = root > kNodeClearance ? std::min(root, 1 - kNodeClearance) : kNodeClearance;
     if (surface.vertex_of_edge.empty()) surface.vertex_of_edge.assign(3 * SparseGrid::kNodes, -1);
     const int node = SparseGrid::node_in_block(local[0], local[1], local[2]);
     surface.vertex_of_edge[3 * node + axis] = static_cast<int>(surface.positions.size());
-    surface.positions.push_back(low + t * (high - low));
+    surface.positions.push_back(vertex_on_edge(grid_, index, axis, f, g, field_));
   }
 
   void place_triangles(int b) {
@@ -174,5 +182,35 @@ class Marcher {
 }  // namespace
 
 SurfaceGeometry march(const SparseGrid& grid, const ScalarFunction& field) { return Marcher(grid, field).run(); }
+
+SurfaceGeometry march(const SparseGrid& grid, const CellSet& cells, const ScalarFunction& field) {
+  const CellTables& tables = cell_tables();
+  SurfaceGeometry result;
+  std::map<std::pair<SparseGrid::Index, int>, int> vertex_of_edge;
+  for (const CellSet::Cell& cell : cells.cells()) {
+    std::array<SparseGrid::Index, 8> corners{};
+    std::array<double, 8> values{};
+    int pattern = 0;
+    for (int c = 0; c < 8; ++c) {
+      corners[c] = {cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2 & 1)};
+      values[c] = grid.value(corners[c]);
+      pattern |= values[c] > 0 ? 1 << c : 0;
+    }
+    for (const auto& edges : tables.triangles[pattern]) {
+      Triangle triangle{};
+      for (int corner = 0; corner < 3; ++corner) {
+        const int axis = edges[corner] / 4;
+        const auto [low, high] = tables.edge_corners[edges[corner]];
+        const auto [place, is_new] =
+            vertex_of_edge.try_emplace({corners[low], axis}, static_cast<int>(result.positions.size()));
+        if (is_new)
+          result.positions.push_back(vertex_on_edge(grid, corners[low], axis, values[low], values[high], field));
+        triangle[corner] = place->second;
+      }
+      result.triangles.push_back(triangle);
+    }
+  }
+  return result;
+}
 
 }  // namespace flowskin::tracking

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "tracking/extraction/cell_set.h"
 #include "tracking/extraction/sparse_grid.h"
 #include "tracking/mesh/surface_mesh.h"
 
@@ -25,5 +26,8 @@ using ScalarFunction = std::function<double(const Vec3&)>;
 ///   millionth of the spacing); else on the root of linear interpolation. Vertices keep a distance of 1e-3 spacings
 ///   from the nodes, so that no two of them coincide even where nodes are exact zeros.
 SurfaceGeometry march(const SparseGrid& grid, const ScalarFunction& field = nullptr);
+
+/// The same surface within some cells only: open where it leaves them. Triangles in the order of the cells.
+SurfaceGeometry march(const SparseGrid& grid, const CellSet& cells, const ScalarFunction& field = nullptr);
 
 }  // namespace flowskin::tracking

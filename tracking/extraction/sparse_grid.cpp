@@ -112,6 +112,18 @@ Vec3 SparseGrid::position(const Index& node) const {
   return spacing_ * Vec3(node[0] + kShift, node[1] + kShift, node[2] + kShift);
 }
 
+Vec3 SparseGrid::coordinates(const Vec3& x) const { return x / spacing_ - Vec3::Constant(kShift); }
+
+double SparseGrid::value(const Index& node) const {
+  Index place{}, inner{};
+  for (int axis = 0; axis < 3; ++axis) {
+    place[axis] = block_coordinate(node[axis]);
+    inner[axis] = node[axis] - kSide * place[axis];
+  }
+  const int block = find(place);
+  return block < 0 ? outside_ : blocks_[block].values[node_in_block(inner[0], inner[1], inner[2])];
+}
+
 SparseGrid SparseGrid::of_particles(const std::vector<Vec3>& positions, const FieldSettings& settings, double spacing,
                                     const std::vector<double>& shares) {
   const auto share = [&shares](std::size_t p) { return shares.empty() ? 1.0 : shares[p]; };

@@ -40,6 +40,10 @@ class SparseGrid {
   /// Where a node is (m). Nodes are shifted against the origin by an odd share of the spacing, so that particles on a
   /// lattice do not make rows of exact zeros.
   Vec3 position(const Index& node) const;
+  /// Where a place is among the nodes: node (i, j, k) has the coordinates i, j, k.
+  Vec3 coordinates(const Vec3& x) const;
+  /// Value at a node, wherever it is.
+  double value(const Index& node) const;
 
   static int node_in_block(int i, int j, int k) { return (i * kSide + j) * kSide + k; }
 

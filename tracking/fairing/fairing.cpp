@@ -1,7 +1,6 @@
 #include "tracking/fairing/fairing.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +12,6 @@ constexpr double kLargestMove = 0.25;  // of the shortest edge at the vertex
 constexpr double kDamping = 0.1;       // keeps the stiffness invertible where all springs lie along one line
 
 using Vec2 = Eigen::Vector2d;
-using Mat2 = Eigen::Matrix2d;
 
 Vec2 laid(const Vec3& spring, const Eigen::Matrix<double, 3, 2>& plane, Laying laying) {
   const Vec2 projected = plane.transpose() * spring;
@@ -22,29 +20,54 @@ Vec2 laid(const Vec3& spring, const Eigen::Matrix<double, 3, 2>& plane, Laying l
   return length > 0 ? Vec2(spring.norm() / length * projected) : projected;
 }
 
-// The springs of one vertex in its tangent plane.
+// A spring of a vertex in its tangent plane.
+struct Spring {
+  Vec2 to_other;
+  double length, rest_length;
+};
+
 struct RingSums {
   double length = 0, rest_length = 0;
   double shortest = std::numeric_limits<double>::max();  // squared, in space
 };
 
 // Newton's step to equilibrium: force / stiffness, both sums over the springs.
-Vec2 step_to_equilibrium(const SpringMesh& mesh, int vertex, const Eigen::Matrix<double, 3, 2>& plane, double scale,
-                         const std::vector<Vec3>& positions) {
+Vec2 step_to_equilibrium(const std::vector<Spring>& springs, double scale) {
   Vec2 force = Vec2::Zero();
-  Mat2 tangent = kDamping * Mat2::Identity();
-  for (const auto& [other, edge] : mesh.topology.ring(vertex)) {
-    const Vec2 spring = laid(positions[other] - positions[vertex], plane, mesh.laying);
-    const double length = spring.norm();
-    if (length <= 0) continue;
-    const Vec2 direction = spring / length;
-    const double strain = 1 - scale * mesh.rest_lengths[edge] / length;
-    force += strain * spring;
-    const Mat2 along = direction * direction.transpose();
-    tangent += along + std::max(0.0, strain) * (Mat2::Identity() - along);
+  double xx = kDamping, xy = 0, yy = kDamping;  // the stiffness
+  for (const Spring& spring : springs) {
+    if (spring.length <= 0) continue;
+    const double per_length = 1 / spring.length;
+    const Vec2 direction = per_length * spring.to_other;
+    const double strain = 1 - scale * spring.rest_length * per_length;
+    force += strain * spring.to_other;
+    const double across = std::max(0.0, strain), more_along = 1 - across;
+    xx += across + more_along * direction.x() * direction.x();
+    xy += more_along * direction.x() * direction.y();
+    yy += across + more_along * direction.y() * direction.y();
   }
-  return tangent.inverse() * force;
+  return Vec2(yy * force.x() - xy * force.y(), xx * force.y() - xy * force.x()) / (xx * yy - xy * xy);
 }
+
+// The rings of a mesh with its vertices numbered along the curve of the neighbourhoods, so that what an iteration
+// reads lies side by side in memory. Springs keep their order within a ring; each end of an edge has its own.
+struct SpringsInOrder {
+  SpringsInOrder(const MeshTopology& mesh, const std::vector<double>& lengths, const Neighborhoods& neighborhoods) {
+    topology.neighbor_begin.reserve(neighborhoods.order().size() + 1);
+    topology.neighbor_begin.push_back(0);
+    topology.neighbors.reserve(mesh.neighbors.size());
+    rest_lengths.reserve(mesh.neighbors.size());
+    for (const int vertex : neighborhoods.order()) {
+      for (const auto& [other, edge] : mesh.ring(vertex)) {
+        topology.neighbors.push_back({neighborhoods.places()[other], static_cast<int>(rest_lengths.size())});
+        rest_lengths.push_back(lengths[edge]);
+      }
+      topology.neighbor_begin.push_back(static_cast<int>(topology.neighbors.size()));
+    }
+  }
+  MeshTopology topology;             // the rings alone
+  std::vector<double> rest_lengths;  // m
+};
 
 // What is left of a move where the velocity is known.
 Vec3 softened(const Vec3& move, const Confidence& confidence) {
@@ -62,15 +85,19 @@ Vec3 fairing_move(const SpringMesh& mesh, int vertex, const Vec3& normal, const 
   plane.col(0) = normal.unitOrthogonal();
   plane.col(1) = normal.cross(plane.col(0));
 
+  thread_local std::vector<Spring> springs;
+  springs.clear();
   RingSums sums;
   for (const auto& [other, edge] : ring) {
     const Vec3 spring = positions[other] - positions[vertex];
-    sums.length += laid(spring, plane, mesh.laying).norm();
-    sums.rest_length += mesh.rest_lengths[edge];
+    const Vec2 in_plane = laid(spring, plane, mesh.laying);
+    springs.push_back({in_plane, in_plane.norm(), mesh.rest_lengths[edge]});
+    sums.length += springs.back().length;
+    sums.rest_length += springs.back().rest_length;
     sums.shortest = std::min(sums.shortest, spring.squaredNorm());
   }
   const double scale = sums.rest_length > sums.length ? sums.length / sums.rest_length : 1.0;
-  Vec2 move = mesh.stiffness * step_to_equilibrium(mesh, vertex, plane, scale, positions);
+  Vec2 move = mesh.stiffness * step_to_equilibrium(springs, scale);
   const double limit = kLargestMove * std::sqrt(sums.shortest), length = move.norm();
   if (length > limit) move *= limit / length;
   return plane * move;
@@ -78,34 +105,38 @@ Vec3 fairing_move(const SpringMesh& mesh, int vertex, const Vec3& normal, const 
 
 void fair(const MetaballField& field, const MeshTopology& topology, const std::vector<double>& rest_lengths,
           const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions) {
-  const int count = static_cast<int>(positions.size());
-  std::vector<SurfaceDistance> points(count);
   const double longest_step = default_projection(field.settings()).max_step;
-#pragma omp parallel for schedule(dynamic, 256)
-  for (int v = 0; v < count; ++v) points[v] = surface_distance(field, positions[v]);
-
-  const SpringMesh mesh{topology, rest_lengths, confidence.empty() ? Laying::projected : Laying::turned,
+  const Neighborhoods neighborhoods(field, positions, usual_slack(field.settings()));
+  const SpringsInOrder springs(topology, rest_lengths, neighborhoods);
+  const SpringMesh mesh{springs.topology, springs.rest_lengths, confidence.empty() ? Laying::projected : Laying::turned,
                         settings.stiffness};
-  std::vector<Vec3> moved(count);
+  const std::vector<int>& places = neighborhoods.places();
+  // From here on, vertices are numbered by their places.
+  std::vector<Vec3> current(positions.size()), moved(positions.size()), normals(positions.size());
+  neighborhoods.for_each([&](int vertex, const LocalField& local) {
+    current[places[vertex]] = positions[vertex];
+    normals[places[vertex]] = surface_distance(local, positions[vertex]).normal;
+  });
   for (int iteration = 0; iteration < settings.iterations; ++iteration) {
-#pragma omp parallel for schedule(dynamic, 256)
-    for (int v = 0; v < count; ++v) {
-      Vec3 move = fairing_move(mesh, v, points[v].normal, positions);
-      if (!confidence.empty()) move = softened(move, confidence[v]);
-      moved[v] = positions[v] + move;
+    neighborhoods.for_each([&](int vertex, const LocalField& local) {
+      const int v = places[vertex];
+      Vec3 move = fairing_move(mesh, v, normals[v], current);
+      if (!confidence.empty()) move = softened(move, confidence[vertex]);
+      moved[v] = current[v] + move;
       Vec3 gradient = Vec3::Zero();
-      const double f = field.value(moved[v], gradient);
+      const double f = local.value(moved[v], gradient);
       const double slope = gradient.norm();
       // One step of [FMM13, Eq. 12]; a vertex that would be thrown off the surface stays where it is.
       if (!(std::abs(f) <= longest_step * slope) || slope <= 0) {
-        moved[v] = positions[v];
-        continue;
+        moved[v] = current[v];
+        return;
       }
       moved[v] -= f / (slope * slope) * gradient;
-      points[v].normal = -gradient / slope;
-    }
-    positions.swap(moved);
+      normals[v] = -gradient / slope;
+    });
+    current.swap(moved);
   }
+  for (std::size_t vertex = 0; vertex < positions.size(); ++vertex) positions[vertex] = current[places[vertex]];
 }
 
 }  // namespace flowskin::tracking

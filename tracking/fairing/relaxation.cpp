@@ -58,14 +58,26 @@ Vec3 relaxed_position(int vertex, const MeshTopology& topology, const std::vecto
   return length > limit ? Vec3(x + limit / length * move) : Vec3(x + move);
 }
 
+// The triangles that move with these vertices, ascending.
+std::vector<int> triangles_at(const std::vector<int>& vertices, const MeshTopology& topology) {
+  std::vector<int> found;
+  for (int vertex : vertices) {
+    for (int t : topology.star(vertex)) found.push_back(t);
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
 // Takes back the moves around triangles that were upright before and are not now.
-void take_back(const std::vector<Triangle>& triangles, const std::vector<char>& inverted_before,
-               const std::vector<Vec3>& old_positions, const std::vector<Vec3>& old_normals,
-               std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
+void take_back(const std::vector<Triangle>& triangles, const std::vector<int>& touched,
+               const std::vector<char>& inverted_before, const std::vector<Vec3>& old_positions,
+               const std::vector<Vec3>& old_normals, std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
   for (int round = 0; round < kTakeBackRounds; ++round) {
     bool any = false;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      if (inverted_before[t] || !is_inverted(triangles[t], positions, normals)) continue;
+    for (std::size_t i = 0; i < touched.size(); ++i) {
+      const int t = touched[i];
+      if (inverted_before[i] || !is_inverted(triangles[t], positions, normals)) continue;
       for (int vertex : triangles[t]) {
         any = any || positions[vertex] != old_positions[vertex];
         positions[vertex] = old_positions[vertex];
@@ -93,20 +105,24 @@ void relax(const MetaballField& field, const ProjectionSettings& projection, con
     moving.resize(positions.size());
     std::iota(moving.begin(), moving.end(), 0);
   }
-  std::vector<char> inverted(triangles.size());
+  const std::vector<int> touched = triangles_at(moving, topology);
+  std::vector<char> inverted(touched.size());
+  std::vector<Vec3> starts(moving.size());
+  for (std::size_t i = 0; i < moving.size(); ++i) starts[i] = positions[moving[i]];
+  const Neighborhoods neighborhoods(field, starts, usual_slack(field.settings()));
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const std::vector<Vec3> old_positions = positions, old_normals = normals;
-    for (std::size_t t = 0; t < triangles.size(); ++t) inverted[t] = is_inverted(triangles[t], positions, normals);
-#pragma omp parallel for schedule(dynamic, 256)
-    for (int i = 0; i < static_cast<int>(moving.size()); ++i) {
+    for (std::size_t i = 0; i < touched.size(); ++i)
+      inverted[i] = is_inverted(triangles[touched[i]], positions, normals);
+    neighborhoods.for_each([&](int i, const LocalField& local) {
       const int vertex = moving[i];
       Vec3 x = relaxed_position(vertex, topology, triangles, old_positions, old_normals[vertex], ridges);
       SurfaceDistance point;
-      if (!project_point(field, projection, x, point)) continue;
+      if (!project_point(local, projection, x, point)) return;
       positions[vertex] = x;
       normals[vertex] = point.normal;
-    }
-    take_back(triangles, inverted, old_positions, old_normals, positions, normals);
+    });
+    take_back(triangles, touched, inverted, old_positions, old_normals, positions, normals);
   }
 }
 

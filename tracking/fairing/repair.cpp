@@ -1,7 +1,7 @@
 #include "tracking/fairing/repair.h"
 
+#include "tracking/fairing/bad_triangles.h"
 #include "tracking/fairing/relaxation.h"
-#include "tracking/topology/guard.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -40,7 +40,7 @@ void repair(const MetaballField& field, const ProjectionSettings& settings, cons
     if (bad.empty() && projection.failed.empty()) return;
     const std::vector<int> vertices = surroundings(projection.failed, bad, topology, triangles);
     relax(field, settings, topology, triangles, kRelaxations, vertices, positions, projection.normals);
-    projection = project_to_surface(field, settings, positions);
+    project_moved(field, settings, vertices, positions, projection);
   }
 }
 

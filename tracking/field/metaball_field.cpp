@@ -1,15 +1,13 @@
 #include "tracking/field/metaball_field.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "tracking/field/metaball_sums.h"
-#include "tracking/field/particle_blocks.h"
+#include "tracking/field/field_parts.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -41,10 +39,19 @@ void check(const std::vector<Vec3>& positions, const std::vector<Vec3>& velociti
   check_finite(velocities, "velocity");
 }
 
-/// Where a thread keeps the numbers of the groups near its point, so that queries do not allocate.
-std::vector<int>& group_scratch() {
-  thread_local std::vector<int> found;
-  return found;
+std::vector<FieldPart> single_part(std::vector<Vec3> positions, std::vector<Vec3> velocities) {
+  std::vector<FieldPart> parts(1);
+  parts.front().positions = std::move(positions);
+  parts.front().velocities = std::move(velocities);
+  return parts;
+}
+
+void append(std::vector<Vec3>&& from, std::vector<Vec3>& to) {
+  if (to.empty()) {
+    to = std::move(from);
+  } else {
+    to.insert(to.end(), from.begin(), from.end());
+  }
 }
 
 }  // namespace
@@ -61,85 +68,30 @@ FieldSettings default_field_settings(double spacing, double radius_in_spacings) 
   return settings;
 }
 
-struct MetaballField::Impl {
-  /// The neighbour lookup of one part.
-  struct Part {
-    ParticleBlocks blocks;
-    double share, share_rate;
-    bool moving;
-    int first;  ///< Number of its first particle.
-  };
-
-  Impl(std::vector<FieldPart> given, const FieldSettings& field_settings) : settings(field_settings) {
-    const bool some_move =
-        std::any_of(given.begin(), given.end(), [](const FieldPart& p) { return !p.velocities.empty(); });
-    const bool one_whole = given.size() == 1 && given.front().share == 1;
-    for (FieldPart& part : given) {
-      check(part.positions, part.velocities, settings);
-      if (!(std::isfinite(part.share) && part.share >= 0 && std::isfinite(part.share_rate)))
-        throw std::invalid_argument("MetaballField: the share of a part is " + std::to_string(part.share) +
-                                    ", its rate " + std::to_string(part.share_rate) +
-                                    "; expected a number that is not negative and a finite one");
-      const std::size_t count = part.positions.size();
-      parts.push_back({ParticleBlocks(part.positions, part.velocities, settings.radius), part.share, part.share_rate,
-                       !part.velocities.empty(), static_cast<int>(positions.size())});
-      if (some_move && part.velocities.empty()) part.velocities.assign(count, Vec3::Zero());
-      if (!one_whole) shares.insert(shares.end(), count, part.share);
-      take(std::move(part.positions), positions);
-      take(std::move(part.velocities), velocities);
-    }
-    if (given.empty()) check({}, {}, settings);
+MetaballField::Impl::Impl(std::vector<FieldPart> given, const FieldSettings& field_settings)
+    : settings(field_settings), per_square(1 / (settings.radius * settings.radius)) {
+  const bool some_move =
+      std::any_of(given.begin(), given.end(), [](const FieldPart& p) { return !p.velocities.empty(); });
+  const bool one_whole = given.size() == 1 && given.front().share == 1;
+  for (FieldPart& part : given) {
+    check(part.positions, part.velocities, settings);
+    if (!(std::isfinite(part.share) && part.share >= 0 && std::isfinite(part.share_rate)))
+      throw std::invalid_argument("MetaballField: the share of a part is " + std::to_string(part.share) +
+                                  ", its rate " + std::to_string(part.share_rate) +
+                                  "; expected a number that is not negative and a finite one");
+    const std::size_t count = part.positions.size();
+    parts.push_back({ParticleBlocks(part.positions, part.velocities, settings.radius), part.share, part.share_rate,
+                     static_cast<int>(positions.size())});
+    if (some_move && part.velocities.empty()) part.velocities.assign(count, Vec3::Zero());
+    if (!one_whole) shares.insert(shares.end(), count, part.share);
+    append(std::move(part.positions), positions);
+    append(std::move(part.velocities), velocities);
   }
-
-  static void take(std::vector<Vec3>&& from, std::vector<Vec3>& to) {
-    if (to.empty()) {
-      to = std::move(from);
-    } else {
-      to.insert(to.end(), from.begin(), from.end());
-    }
-  }
-
-  /// Calls visit(group, ex, ey, ez, u, inside) for every four particles of a part of which some may be nearer than
-  /// sigma.
-  template <class Visit>
-  void for_each_group(const Part& part, const Vec3& x, const Visit& visit) const {
-    std::vector<int>& near = group_scratch();
-    const int count = part.blocks.near(x, settings.radius, near);
-    const double per_radius = 1 / settings.radius;
-    for (int i = 0; i < count; ++i) {
-      const ParticleGroup& group = part.blocks.group(near[i]);
-      const Lanes ex = (x.x() - group.x) * per_radius;
-      const Lanes ey = (x.y() - group.y) * per_radius;
-      const Lanes ez = (x.z() - group.z) * per_radius;
-      const Lanes u = 1 - (ex * ex + ey * ey + ez * ez);
-      const LaneMask inside = u > 0;
-      visit(group, ex, ey, ez, u, inside);
-    }
-  }
-
-  double kernel_sum(const Part& part, const Vec3& x) const;
-  double kernel_sum(const Part& part, const Vec3& x, Vec3& gradient_sum) const;
-  Jet part_jet(const Part& part, const Vec3& x, const FieldSettings& with) const;
-  void add_moments(const Part& part, const Vec3& x, KernelMoments& moments) const;
-
-  FieldSettings settings;
-  std::vector<Vec3> positions;
-  std::vector<Vec3> velocities;
-  std::vector<double> shares;
-  std::vector<Part> parts;
-};
-
-namespace {
-
-std::vector<FieldPart> single_part(std::vector<Vec3> positions, std::vector<Vec3> velocities) {
-  std::vector<FieldPart> parts(1);
-  parts.front().positions = std::move(positions);
-  parts.front().velocities = std::move(velocities);
-  return parts;
+  if (given.empty()) check({}, {}, settings);
 }
 
-/// Adds a part's jet with its share; its value is without the threshold.
-void add_share(const Jet& jet, double share, double share_rate, Jet& sum) {
+void MetaballField::Impl::add_share(const Jet& jet, const Part& part, Jet& sum) {
+  const double share = part.share, share_rate = part.share_rate;
   sum.value += share * jet.value;
   sum.gradient += share * jet.gradient;
   sum.hessian += share * jet.hessian;
@@ -150,8 +102,6 @@ void add_share(const Jet& jet, double share, double share_rate, Jet& sum) {
   sum.neighbors += jet.neighbors;
 }
 
-}  // namespace
-
 MetaballField::MetaballField(std::vector<Vec3> positions, std::vector<Vec3> velocities, FieldSettings settings)
     : MetaballField(single_part(std::move(positions), std::move(velocities)), settings) {}
 MetaballField::MetaballField(std::vector<FieldPart> parts, FieldSettings settings)
@@ -160,144 +110,12 @@ MetaballField::~MetaballField() = default;
 MetaballField::MetaballField(MetaballField&&) noexcept = default;
 MetaballField& MetaballField::operator=(MetaballField&&) noexcept = default;
 
-double MetaballField::Impl::kernel_sum(const Part& part, const Vec3& x) const {
-  const Lanes zero{};
-  Lanes sum{};
-  for_each_group(part, x,
-                 [&](const ParticleGroup&, const Lanes&, const Lanes&, const Lanes&, const Lanes& u,
-                     const LaneMask& inside) { sum += inside ? u * u * u : zero; });
-  return lane_sum(sum);
-}
-
-double MetaballField::Impl::kernel_sum(const Part& part, const Vec3& x, Vec3& gradient_sum) const {
-  const Lanes zero{};
-  Lanes sum{}, gx{}, gy{}, gz{};
-  for_each_group(part, x,
-                 [&](const ParticleGroup&, const Lanes& ex, const Lanes& ey, const Lanes& ez, const Lanes& u,
-                     const LaneMask& inside) {
-                   const Lanes u2 = inside ? u * u : zero;
-                   sum += inside ? u2 * u : zero;
-                   gx += inside ? u2 * ex : zero;
-                   gy += inside ? u2 * ey : zero;
-                   gz += inside ? u2 * ez : zero;
-                 });
-  gradient_sum = Vec3(lane_sum(gx), lane_sum(gy), lane_sum(gz));
-  return lane_sum(sum);
-}
-
-Jet MetaballField::Impl::part_jet(const Part& part, const Vec3& x, const FieldSettings& with) const {
-  constexpr int capacity = 32;
-  std::array<NeighborLanes, capacity> lanes;
-  int count = 0;
-  const Lanes zero{};
-  LaneMask neighbors{};
-  MetaballSums sums;
-  for_each_group(part, x,
-                 [&](const ParticleGroup& group, const Lanes& ex, const Lanes& ey, const Lanes& ez, const Lanes& u,
-                     const LaneMask& inside) {
-                   if (count == capacity) {
-                     sums.add(lanes.data(), count, part.moving);
-                     count = 0;
-                   }
-                   NeighborLanes& next = lanes[count];
-                   next.ex = inside ? ex : zero;
-                   next.ey = inside ? ey : zero;
-                   next.ez = inside ? ez : zero;
-                   next.u = inside ? u : zero;
-                   next.vx = group.vx;
-                   next.vy = group.vy;
-                   next.vz = group.vz;
-                   neighbors -= inside;                          // a lane of a mask is 0 or -1
-                   count += static_cast<int>(any_lane(inside));  // without a branch, which could not be foretold
-                 });
-  sums.add(lanes.data(), count, part.moving);
-  Jet jet = sums.jet(with);
-  jet.neighbors = static_cast<int>(neighbors[0] + neighbors[1] + neighbors[2] + neighbors[3]);
-  return jet;
-}
-
-void MetaballField::Impl::add_moments(const Part& part, const Vec3& x, KernelMoments& moments) const {
-  const Lanes zero{};
-  std::array<Lanes, 3> gradient{};
-  std::array<Lanes, 6> u2_ee{}, u_ee{};
-  std::array<Lanes, 10> u_eee{};
-  std::array<Lanes, 15> eeee{};
-  for_each_group(part, x,
-                 [&](const ParticleGroup&, const Lanes& ex, const Lanes& ey, const Lanes& ez, const Lanes& u,
-                     const LaneMask& inside) {
-                   if (!any_lane(inside)) return;
-                   const std::array<Lanes, 3> e = {inside ? ex : zero, inside ? ey : zero, inside ? ez : zero};
-                   const Lanes u_in = inside ? u : zero;
-                   // In lexicographic order of ascending indices.
-                   std::size_t second = 0, third = 0, fourth = 0;
-                   for (int a = 0; a < 3; ++a) {
-                     gradient[a] += u_in * u_in * e[a];
-                     for (int b = a; b < 3; ++b) {
-                       const Lanes ee = e[a] * e[b];
-                       const Lanes uee = u_in * ee;
-                       u_ee[second] += uee;
-                       u2_ee[second++] += u_in * uee;
-                       for (int c = b; c < 3; ++c) {
-                         u_eee[third++] += uee * e[c];
-                         for (int d = c; d < 3; ++d) eeee[fourth++] += ee * e[c] * e[d];
-                       }
-                     }
-                   }
-                 });
-  const auto sum = [&part](const auto& lanes, auto& sums) {
-    for (std::size_t i = 0; i < lanes.size(); ++i) sums[i] += part.share * lane_sum(lanes[i]);
-  };
-  sum(u2_ee, moments.u2_ee);
-  sum(u_ee, moments.u_ee);
-  sum(u_eee, moments.u_eee);
-  sum(eeee, moments.eeee);
-  for (int a = 0; a < 3; ++a) moments.gradient[a] -= 6 * part.share * lane_sum(gradient[a]);
-}
-
-double MetaballField::value(const Vec3& x) const {
-  double sum = 0;
-  for (const Impl::Part& part : impl_->parts) {
-    if (part.share > 0) sum += part.share * impl_->kernel_sum(part, x);
-  }
-  return impl_->settings.weight * sum - impl_->settings.threshold;
-}
-
+double MetaballField::value(const Vec3& x) const { return impl_->value(x, impl_->looked_up(x)); }
 double MetaballField::value(const Vec3& x, Vec3& gradient) const {
-  const FieldSettings& settings = impl_->settings;
-  double sum = 0;
-  Vec3 gradient_sum = Vec3::Zero();
-  for (const Impl::Part& part : impl_->parts) {
-    if (!(part.share > 0)) continue;
-    Vec3 part_gradient;
-    sum += part.share * impl_->kernel_sum(part, x, part_gradient);
-    gradient_sum += part.share * part_gradient;
-  }
-  gradient = -6 * settings.weight / settings.radius * gradient_sum;
-  return settings.weight * sum - settings.threshold;
+  return impl_->value(x, gradient, impl_->looked_up(x));
 }
-
-Jet MetaballField::jet(const Vec3& x) const {
-  const FieldSettings& settings = impl_->settings;
-  if (impl_->shares.empty() && impl_->parts.size() == 1 && impl_->parts.front().share_rate == 0)
-    return impl_->part_jet(impl_->parts.front(), x, settings);
-  FieldSettings without_threshold = settings;
-  without_threshold.threshold = 0;
-  Jet jet;
-  for (const Impl::Part& part : impl_->parts) {
-    if (part.share > 0 || part.share_rate != 0)
-      add_share(impl_->part_jet(part, x, without_threshold), part.share, part.share_rate, jet);
-  }
-  jet.value -= settings.threshold;
-  return jet;
-}
-
-KernelMoments MetaballField::moments(const Vec3& x) const {
-  KernelMoments moments;
-  for (const Impl::Part& part : impl_->parts) {
-    if (part.share > 0) impl_->add_moments(part, x, moments);
-  }
-  return moments;
-}
+Jet MetaballField::jet(const Vec3& x) const { return impl_->jet(x, impl_->looked_up(x)); }
+KernelMoments MetaballField::moments(const Vec3& x) const { return impl_->moments(x, impl_->looked_up(x)); }
 
 const FieldSettings& MetaballField::settings() const { return impl_->settings; }
 const std::vector<Vec3>& MetaballField::positions() const { return impl_->positions; }
@@ -307,19 +125,8 @@ const std::vector<double>& MetaballField::shares() const { return impl_->shares;
 void MetaballField::neighbors(const Vec3& x, double radius, std::vector<int>& found) const {
   found.clear();
   if (!(radius > 0)) return;
-  std::vector<int>& near = group_scratch();
-  for (const Impl::Part& part : impl_->parts) {
-    const int count = part.blocks.near(x, radius, near);
-    for (int i = 0; i < count; ++i) {
-      for (int lane = 0; lane < lane_count; ++lane) {
-        const int in_part = part.blocks.particle(near[i], lane);
-        if (in_part < 0) continue;
-        const int particle = part.first + in_part;
-        if ((impl_->positions[particle] - x).squaredNorm() < radius * radius) found.push_back(particle);
-      }
-    }
-  }
-  std::sort(found.begin(), found.end());
+  impl_->neighbors(x, radius, found,
+                   [&](std::size_t part) { return impl_->parts[part].blocks.near(x, radius, Impl::scratch()); });
 }
 
 }  // namespace flowskin::tracking

@@ -62,6 +62,8 @@ class MetaballField {
   void neighbors(const Vec3& x, double radius, std::vector<int>& found) const;
 
  private:
+  friend class LocalField;
+  friend class Neighborhoods;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -1,10 +1,10 @@
 #include "tracking/field/particle_blocks.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <nanoflann.hpp>
+#include <utility>
 
 #include "tracking/field/hilbert.h"
 
@@ -16,6 +16,11 @@ constexpr int largest_count = 64;        // particles in a block
 constexpr double largest_size = 1.2;     // half the diagonal of a block's box, in reaches
 constexpr double cell_in_reaches = 0.2;  // finer cells would not change the order by much
 constexpr int tree_leaf_size = 8;
+
+// A query looks a little further, so that a particle on the rim of its reach is not lost to rounding.
+constexpr double margin = 1 + 1e-9;
+// Where lanes without a particle lie: the square is finite, and nothing is near.
+constexpr double far_away = 1e150;
 
 double square(double a) { return a * a; }
 
@@ -50,6 +55,35 @@ class BlocksWithin {
   std::vector<int>& found_;
 };
 
+/// Adds the squared distance along one axis from a range of points to four intervals.
+void add_square_beyond(const Lanes& low, const Lanes& high, double first, double last, Lanes& sum) {
+  const Lanes below = low - last;
+  const Lanes above = first - high;
+  const Lanes outside = below > above ? below : above;  // of the interval; negative inside
+  sum += outside > 0 ? outside * outside : Lanes{};
+}
+
+/// Whether boxes are within a distance, whose square is `limit`, of the box from `low` to `high`.
+LaneMask within(const GroupBoxes& boxes, const Vec3& low, const Vec3& high, double limit) {
+  Lanes distance_squared{};
+  add_square_beyond(boxes.low_x, boxes.high_x, low.x(), high.x(), distance_squared);
+  add_square_beyond(boxes.low_y, boxes.high_y, low.y(), high.y(), distance_squared);
+  add_square_beyond(boxes.low_z, boxes.high_z, low.z(), high.z(), distance_squared);
+  return distance_squared <= limit;
+}
+
+/// Writes the indices of the groups near x among the four of these boxes; returns how many. There must be room for
+/// four.
+int write_near(const GroupBoxes& boxes, int index, const Vec3& x, double limit, int* found) {
+  const LaneMask reached = within(boxes, x, x, limit);
+  int count = 0;
+  for (int lane = 0; lane < lane_count; ++lane) {  // without branches: which ones are near cannot be foretold
+    found[count] = index * lane_count + lane;
+    count -= static_cast<int>(reached[lane]);
+  }
+  return count;
+}
+
 }  // namespace
 
 struct ParticleBlocks::Tree {
@@ -66,7 +100,8 @@ ParticleBlocks::ParticleBlocks(const std::vector<Vec3>& positions, const std::ve
   const double diagonal_limit = square(2 * largest_size * reach);
   const int count = static_cast<int>(order.size());
   std::vector<Vec3> centres;
-  for (int begin = 0, end = 0; begin < count; begin = end) {
+  std::vector<int> begins;  // of the blocks in the order
+  for (int begin = 0, end = 0, boxes = 0; begin < count; begin = end) {
     Vec3 low = positions[order[begin]];
     Vec3 high = low;
     for (end = begin + 1; end < count && end - begin < largest_count; ++end) {
@@ -77,43 +112,60 @@ ParticleBlocks::ParticleBlocks(const std::vector<Vec3>& positions, const std::ve
       low = new_low;
       high = new_high;
     }
-    add_block(positions, velocities, order.data() + begin, order.data() + end);
+    constexpr int in_boxes = lane_count * lane_count;  // particles in four boxes
+    const int first_boxes = std::exchange(boxes, boxes + (end - begin + in_boxes - 1) / in_boxes);
+    blocks_.push_back({first_boxes, boxes});
+    begins.push_back(begin);
     centres.emplace_back(0.5 * (low + high));
     largest_block_ = std::max(largest_block_, 0.5 * (high - low).norm());
   }
-  if (!centres.empty()) tree_ = std::make_unique<Tree>(std::move(centres));
+  if (centres.empty()) return;
+  begins.push_back(count);
+  tree_ = std::make_unique<Tree>(std::move(centres));
+
+  const auto box_count = static_cast<std::size_t>(blocks_.back().last_boxes);
+  boxes_.resize(box_count);
+  positions_.resize(lane_count * box_count);
+  velocities_.resize(velocities.empty() ? 0 : positions_.size());
+  particles_.resize(lane_count * positions_.size());
+#pragma omp parallel for schedule(static) if (count > 10000)
+  for (int b = 0; b < static_cast<int>(blocks_.size()); ++b) {
+    fill_block(blocks_[b], positions, velocities, order.data() + begins[b], order.data() + begins[b + 1]);
+  }
 }
 
 ParticleBlocks::~ParticleBlocks() = default;
 ParticleBlocks::ParticleBlocks(ParticleBlocks&&) noexcept = default;
 
-void ParticleBlocks::add_block(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities,
-                               const int* begin, const int* end) {
+void ParticleBlocks::fill_block(const Block& block, const std::vector<Vec3>& positions,
+                                const std::vector<Vec3>& velocities, const int* begin, const int* end) {
   constexpr double nowhere = std::numeric_limits<double>::infinity();
-  const Lanes far_away = {nowhere, nowhere, nowhere, nowhere};
-  const int first_boxes = static_cast<int>(boxes_.size());
-  for (const int* at = begin; at < end;) {
-    GroupBoxes boxes{far_away, far_away, far_away, far_away, far_away, far_away};
+  const Lanes no_box = {nowhere, nowhere, nowhere, nowhere};
+  const Lanes no_place = {far_away, far_away, far_away, far_away};
+  const auto set = [](GroupVectors& vectors, int lane, const Vec3& v) {
+    vectors.x[lane] = v.x();
+    vectors.y[lane] = v.y();
+    vectors.z[lane] = v.z();
+  };
+  const int* at = begin;
+  for (int b = block.first_boxes; b < block.last_boxes; ++b) {
+    GroupBoxes boxes{no_box, no_box, no_box, no_box, no_box, no_box};
     for (int box = 0; box < lane_count; ++box) {
-      ParticleGroup group{far_away, far_away, far_away, Lanes{}, Lanes{}, Lanes{}};
+      const int group = b * lane_count + box;
+      GroupVectors places{no_place, no_place, no_place}, speeds{};
       Vec3 low = Vec3::Constant(nowhere);
       Vec3 high = Vec3::Constant(at < end ? -nowhere : nowhere);
       for (int lane = 0; lane < lane_count; ++lane) {
         const int particle = at < end ? *at++ : -1;
-        particles_.push_back(particle);
+        particles_[group * lane_count + lane] = particle;
         if (particle < 0) continue;
-        const Vec3& position = positions[particle];
-        low = low.cwiseMin(position);
-        high = high.cwiseMax(position);
-        group.x[lane] = position.x();
-        group.y[lane] = position.y();
-        group.z[lane] = position.z();
-        if (velocities.empty()) continue;
-        group.vx[lane] = velocities[particle].x();
-        group.vy[lane] = velocities[particle].y();
-        group.vz[lane] = velocities[particle].z();
+        low = low.cwiseMin(positions[particle]);
+        high = high.cwiseMax(positions[particle]);
+        set(places, lane, positions[particle]);
+        if (!velocities.empty()) set(speeds, lane, velocities[particle]);
       }
-      groups_.push_back(group);
+      positions_[group] = places;
+      if (!velocities.empty()) velocities_[group] = speeds;
       boxes.low_x[box] = low.x();
       boxes.low_y[box] = low.y();
       boxes.low_z[box] = low.z();
@@ -121,47 +173,55 @@ void ParticleBlocks::add_block(const std::vector<Vec3>& positions, const std::ve
       boxes.high_y[box] = high.y();
       boxes.high_z[box] = high.z();
     }
-    boxes_.push_back(boxes);
+    boxes_[b] = boxes;
   }
-  blocks_.push_back({first_boxes, static_cast<int>(boxes_.size())});
 }
 
-int ParticleBlocks::near(const Vec3& x, double radius, std::vector<int>& found) const {
-  if (!tree_ || !x.allFinite()) return 0;
-  // A particle on the rim of the reach must not be lost to rounding in the tree: look a little further.
-  constexpr double margin = 1 + 1e-9;
-  thread_local std::vector<int> near_blocks;
-  near_blocks.clear();
-  BlocksWithin within(square((radius + largest_block_) * margin), near_blocks);
-  tree_->index.findNeighbors(within, x.data(), {});
-  std::sort(near_blocks.begin(), near_blocks.end());
+void ParticleBlocks::blocks_near(const Vec3& x, double radius, std::vector<int>& found) const {
+  found.clear();
+  if (!tree_ || !x.allFinite()) return;
+  BlocksWithin blocks(square((radius + largest_block_) * margin), found);
+  tree_->index.findNeighbors(blocks, x.data(), {});
+  std::sort(found.begin(), found.end());
+}
 
+GroupList ParticleBlocks::near(const Vec3& x, double radius, std::vector<int>& found) const {
+  thread_local std::vector<int> near_blocks;
+  blocks_near(x, radius, near_blocks);
   const std::size_t most = near_blocks.size() * largest_count / lane_count;
   if (found.size() < most) found.resize(most);
   const double limit = square(radius * margin);
-  const auto add_square_beyond = [](const Lanes& low, const Lanes& high, double at, Lanes& sum) {
-    const Lanes below = low - at;
-    const Lanes above = at - high;
-    const Lanes outside = below > above ? below : above;  // of the interval; negative inside
-    sum += outside > 0 ? outside * outside : Lanes{};
-  };
   int count = 0;
   for (const int index : near_blocks) {
     const Block& block = blocks_[index];
+    for (int b = block.first_boxes; b < block.last_boxes; ++b)
+      count += write_near(boxes_[b], b, x, limit, found.data() + count);
+  }
+  return {found.data(), static_cast<std::size_t>(count)};
+}
+
+void ParticleBlocks::boxes_near(const Vec3& low, const Vec3& high, double radius, std::vector<int>& found) const {
+  thread_local std::vector<int> near_blocks;
+  blocks_near(0.5 * (low + high), radius + 0.5 * (high - low).norm(), near_blocks);
+  const double limit = square(radius * margin);
+  found.clear();
+  for (const int index : near_blocks) {
+    const Block& block = blocks_[index];
     for (int b = block.first_boxes; b < block.last_boxes; ++b) {
-      const GroupBoxes& boxes = boxes_[b];
-      Lanes distance_squared{};
-      add_square_beyond(boxes.low_x, boxes.high_x, x.x(), distance_squared);
-      add_square_beyond(boxes.low_y, boxes.high_y, x.y(), distance_squared);
-      add_square_beyond(boxes.low_z, boxes.high_z, x.z(), distance_squared);
-      const LaneMask reached = distance_squared <= limit;
-      for (int lane = 0; lane < lane_count; ++lane) {  // without branches: which ones are near cannot be foretold
-        found[count] = b * lane_count + lane;
-        count -= static_cast<int>(reached[lane]);
-      }
+      if (any_lane(within(boxes_[b], low, high, limit))) found.push_back(b);
     }
   }
-  return count;
+}
+
+void ParticleBlocks::append_near(const Vec3& x, double radius, const std::vector<int>& boxes,
+                                 std::vector<int>& found) const {
+  const double limit = square(radius * margin);
+  const std::size_t before = found.size();
+  found.resize(before + boxes.size() * lane_count);
+  int* const begin = found.data() + before;
+  int count = 0;
+  for (const int b : boxes) count += write_near(boxes_[b], b, x, limit, begin + count);
+  found.resize(before + static_cast<std::size_t>(count));
 }
 
 }  // namespace flowskin::tracking

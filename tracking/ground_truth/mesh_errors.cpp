@@ -4,9 +4,9 @@
 #include <limits>
 #include <unordered_map>
 
-#include "tracking/ground_truth/quantile.h"
 #include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/mesh_measures.h"
+#include "tracking/quantile.h"
 
 namespace flowskin::tracking {
 namespace {

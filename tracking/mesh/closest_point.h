@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "tracking/mesh/surface_mesh.h"
+#include "tracking/mesh/triangle_tree.h"
 
 namespace flowskin::tracking {
 
@@ -15,7 +15,10 @@ struct MeshPoint {
   double distance = 0;  ///< From the point asked for (m).
 };
 
-/// Tree of bounding boxes over the triangles of a mesh, which must outlive it unchanged. Safe to ask from many threads.
+/// Distance from x to a triangle (m), and the weights of the corners that make its closest point.
+double closest_on_triangle(const Vec3& x, const std::array<Vec3, 3>& corners, std::array<double, 3>& weights);
+
+/// Finds closest points of a mesh, which must outlive it unchanged. Safe to ask from many threads.
 class ClosestPointTree {
  public:
   ClosestPointTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
@@ -24,19 +27,22 @@ class ClosestPointTree {
   /// with a cosine above `cosine` with it. Of equally near triangles, always the same one is found.
   MeshPoint closest(const Vec3& x, double reach, const Vec3& normal = Vec3::Zero(), double cosine = 0) const;
 
+  /// Distance of a point to the mesh (m); any not larger than `near_enough` where that is so near, which is found
+  /// sooner. Infinite where the mesh has no triangles.
+  double distance(const Vec3& x, double near_enough = -1) const;
+
  private:
-  struct Node {
-    Vec3 low, high;
-    int begin, end;  // triangles of a leaf, in order_
-    int right;       // the left child follows its parent; -1: a leaf
+  struct Query {
+    const Vec3& x;
+    Vec3 normal;
+    double cosine;
+    double near_enough;  // the search ends where something as near is found
   };
-  int build(int begin, int end, const std::vector<Vec3>& centers);
-  void search(int node, const Vec3& x, const Vec3& normal, double cosine, MeshPoint& best) const;
+  void search(int node, const Query& query, MeshPoint& best) const;
 
   const std::vector<Vec3>& positions_;
   const std::vector<Triangle>& triangles_;
-  std::vector<int> order_;
-  std::vector<Node> nodes_;
+  TriangleTree tree_;
 };
 
 }  // namespace flowskin::tracking

@@ -10,10 +10,9 @@
 namespace flowskin::tracking {
 namespace {
 
+constexpr int kUsualStar = 8;         // triangles at a vertex
 constexpr double kLargestTurn = 0.5;  // cosine of 60 degrees
 constexpr double kSliver = 0.15;      // shape() of a triangle not to be made
-constexpr double kNeedle = 0.02;      // shape() below which a triangle's normal says nothing
-constexpr double kSameSide = 0.3;     // cosine between a triangle and the surface where they agree
 constexpr double kTinyEdge = 0.15;    // of the longest edge
 constexpr double kFlat = 0.8;         // cosine of the largest angle between triangles whose edge may be flipped
 
@@ -33,14 +32,15 @@ Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
 }
 
+}  // namespace
+
 double angle_at(const Vec3& x, const Vec3& a, const Vec3& b) {
   return std::atan2((a - x).cross(b - x).norm(), (a - x).dot(b - x));
 }
 
-}  // namespace
-
 EditableMesh::EditableMesh(std::vector<Vec3>& positions, std::vector<Triangle>& triangles)
     : positions_(positions), triangles_(triangles), stars_(positions.size()) {
+  for (std::vector<int>& star : stars_) star.reserve(kUsualStar);
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     for (int vertex : triangles[t]) stars_[vertex].push_back(t);
   }
@@ -107,27 +107,6 @@ bool EditableMesh::collapse_keeps_shape(int kept, int removed, double longest_ed
   return std::abs(volume) / 6 <= largest_volume;
 }
 
-bool EditableMesh::collapse_keeps_side(int kept, int removed, double longest_edge,
-                                       const std::vector<Vec3>& normals) const {
-  for (int t : stars_[removed]) {
-    if (contains(triangles_[t], kept)) continue;
-    std::array<Vec3, 3> before, after;
-    Vec3 side = Vec3::Zero();
-    for (int corner = 0; corner < 3; ++corner) {
-      const int vertex = triangles_[t][corner];
-      before[corner] = positions_[vertex];
-      after[corner] = vertex == removed ? positions_[kept] : before[corner];
-      side += normals[vertex == removed ? kept : vertex];
-      if (vertex != removed && (positions_[vertex] - positions_[kept]).norm() > longest_edge) return false;
-    }
-    const auto agrees = [&](const std::array<Vec3, 3>& x) {
-      return shape(x[0], x[1], x[2]) > kNeedle && unit_normal(x[0], x[1], x[2]).dot(side.normalized()) > kSameSide;
-    };
-    if (agrees(before) && !agrees(after)) return false;
-  }
-  return true;
-}
-
 bool EditableMesh::may_collapse(int kept, int removed) const {
   if (kept == removed || !alive(kept) || !alive(removed)) return false;
   std::array<int, 2> triangles{}, opposite{};
@@ -156,12 +135,6 @@ void EditableMesh::merge(int kept, int removed) {
 
 bool EditableMesh::collapse(int kept, int removed, double longest_edge, double largest_volume) {
   if (!may_collapse(kept, removed) || !collapse_keeps_shape(kept, removed, longest_edge, largest_volume)) return false;
-  merge(kept, removed);
-  return true;
-}
-
-bool EditableMesh::collapse_tangled(int kept, int removed, double longest_edge, const std::vector<Vec3>& normals) {
-  if (!may_collapse(kept, removed) || !collapse_keeps_side(kept, removed, longest_edge, normals)) return false;
   merge(kept, removed);
   return true;
 }

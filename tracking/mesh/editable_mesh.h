@@ -8,6 +8,9 @@
 
 namespace flowskin::tracking {
 
+/// Angle at x between the directions to a and b (rad).
+double angle_at(const Vec3& x, const Vec3& a, const Vec3& b);
+
 /// Works on positions and triangles in place; what a collapse removes stays as a gap until compact().
 class EditableMesh {
  public:
@@ -20,10 +23,6 @@ class EditableMesh {
   /// enclosed volume would change by more than `largest_volume` (m^3).
   bool collapse(int kept, int removed, double longest_edge,
                 double largest_volume = std::numeric_limits<double>::infinity());
-
-  /// The same in a tangle, where triangles do not know how they should look: refused where a triangle that agreed with
-  /// the surface's outward normals (one a vertex) would no longer do so.
-  bool collapse_tangled(int kept, int removed, double longest_edge, const std::vector<Vec3>& normals);
 
   /// Puts a new vertex, the last one, in the middle of edge ab and returns its index; -1 where there is no such edge.
   int split(int a, int b);
@@ -49,7 +48,6 @@ class EditableMesh {
   bool wings(int a, int b, std::array<int, 2>& triangles, std::array<int, 2>& opposite) const;
   Vec3 star_normal(int vertex) const;
   bool collapse_keeps_shape(int kept, int removed, double longest_edge, double largest_volume) const;
-  bool collapse_keeps_side(int kept, int removed, double longest_edge, const std::vector<Vec3>& normals) const;
   /// True where the link condition holds: the mesh stays two-manifold.
   bool may_collapse(int kept, int removed) const;
   /// @pre may_collapse

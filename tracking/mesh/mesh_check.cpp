@@ -213,6 +213,7 @@ std::vector<std::string> mesh_problems(const SurfaceMesh& mesh) {
     }
   };
   check_size(mesh.rest_positions.size(), "rest positions");
+  for (const auto& layer : mesh.layers) check_size(layer.size(), "places in a layer");
   check_size(mesh.velocities.size(), "velocities");
   check_size(mesh.ids.size(), "ids");
   check_finite(mesh.rest_positions, "rest positions", problems);

@@ -38,6 +38,13 @@ double smallest_angle(const std::vector<Vec3>& positions, const Triangle& triang
   return smallest;
 }
 
+template <class Condition>
+double share_of(const std::vector<double>& values, const Condition& condition) {
+  if (values.empty()) return 1;
+  return static_cast<double>(std::count_if(values.begin(), values.end(), condition)) /
+         static_cast<double>(values.size());
+}
+
 }  // namespace
 
 double mesh_volume(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
@@ -116,6 +123,16 @@ std::vector<double> smallest_angles(const std::vector<Vec3>& positions, const st
   angles.reserve(triangles.size());
   for (const Triangle& triangle : triangles) angles.push_back(smallest_angle(positions, triangle));
   return angles;
+}
+
+double share_of_angles_above(const std::vector<double>& smallest_angles, double angle) {
+  return share_of(smallest_angles, [&](double smallest) { return smallest > angle; });
+}
+
+double share_of_edges_within(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                             double shortest, double longest) {
+  return share_of(edge_lengths(build_topology(static_cast<int>(positions.size()), triangles), positions),
+                  [&](double length) { return length >= shortest && length <= longest; });
 }
 
 std::vector<Vec3> vertex_normals(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {

@@ -38,6 +38,13 @@ MeshQuality mesh_quality(const std::vector<Vec3>& positions, const std::vector<T
 /// Smallest angle of each triangle (rad).
 std::vector<double> smallest_angles(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
+/// Share of the triangles whose smallest angle is larger than `angle` (rad); 1 where there are none.
+double share_of_angles_above(const std::vector<double>& smallest_angles, double angle);
+
+/// Share of the edges whose length is from `shortest` to `longest` (m); 1 where there are none.
+double share_of_edges_within(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                             double shortest, double longest);
+
 /// Twice the area vector of a triangle (m^2), along the outward normal.
 inline Vec3 doubled_area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
   const Vec3& a = positions[triangle[0]];

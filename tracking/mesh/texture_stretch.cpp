@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -33,14 +34,21 @@ Stretch stretch_of(const Mat2& rest, const Mat2& now) {
 
 }  // namespace
 
-std::vector<Stretch> texture_stretch(const SurfaceMesh& mesh) {
+double distortion(const Stretch& stretch) {
+  const double squeeze = stretch.smallest > 0 ? 1 / stretch.smallest : std::numeric_limits<double>::infinity();
+  return std::max({1.0, stretch.largest, squeeze});
+}
+
+std::vector<Stretch> texture_stretch(const SurfaceMesh& mesh, const std::vector<Vec3>& places) {
   std::vector<Stretch> stretch(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto [a, b, c] = mesh.triangles[t];
-    stretch[t] = stretch_of(edges_in_plane(mesh.rest_positions[a], mesh.rest_positions[b], mesh.rest_positions[c]),
+    stretch[t] = stretch_of(edges_in_plane(places[a], places[b], places[c]),
                             edges_in_plane(mesh.positions[a], mesh.positions[b], mesh.positions[c]));
   }
   return stretch;
 }
+
+std::vector<Stretch> texture_stretch(const SurfaceMesh& mesh) { return texture_stretch(mesh, mesh.rest_positions); }
 
 }  // namespace flowskin::tracking

@@ -19,23 +19,46 @@ void build_stars(int vertex_count, const std::vector<Triangle>& triangles, MeshT
   }
 }
 
+// A side of a triangle, seen from its lower vertex.
+struct Side {
+  int higher, triangle;
+  bool operator<(const Side& other) const {
+    return higher != other.higher ? higher < other.higher : triangle < other.triangle;
+  }
+};
+
 // The edges that start at their lower vertex, in lexicographic order.
 void build_edges(int vertex_count, const std::vector<Triangle>& triangles, MeshTopology& topology) {
-  std::vector<std::array<int, 2>> ends;  // (higher vertex, triangle) of the edges of one lower vertex
+  std::vector<Side> sides(6 * triangles.size());  // those of a vertex begin at twice its triangle_begin
+  std::vector<int> side_count(vertex_count, 0), edge_begin(vertex_count + 1, 0);
+#pragma omp parallel for schedule(static)
   for (int vertex = 0; vertex < vertex_count; ++vertex) {
-    ends.clear();
+    Side* const begin = sides.data() + 2 * static_cast<std::ptrdiff_t>(topology.triangle_begin[vertex]);
+    Side* end = begin;
     for (int t : topology.star(vertex)) {
       for (int other : triangles[t]) {
-        if (other > vertex) ends.push_back({other, t});
+        if (other > vertex) *end++ = {other, t};
       }
     }
-    std::sort(ends.begin(), ends.end());
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (i == 0 || ends[i][0] != ends[i - 1][0]) {
-        topology.edges.push_back({vertex, ends[i][0]});
-        topology.edge_triangles.push_back({ends[i][1], -1});
-      } else if (topology.edge_triangles.back()[1] < 0) {
-        topology.edge_triangles.back()[1] = ends[i][1];
+    std::sort(begin, end);
+    side_count[vertex] = static_cast<int>(end - begin);
+    for (const Side* side = begin; side != end; ++side) {
+      edge_begin[vertex + 1] += side == begin || side->higher != side[-1].higher;
+    }
+  }
+  std::partial_sum(edge_begin.begin(), edge_begin.end(), edge_begin.begin());
+  topology.edges.resize(edge_begin.back());
+  topology.edge_triangles.resize(edge_begin.back());
+#pragma omp parallel for schedule(static)
+  for (int vertex = 0; vertex < vertex_count; ++vertex) {
+    const Side* const begin = sides.data() + 2 * static_cast<std::ptrdiff_t>(topology.triangle_begin[vertex]);
+    int edge = edge_begin[vertex] - 1;
+    for (const Side* side = begin; side != begin + side_count[vertex]; ++side) {
+      if (side == begin || side->higher != side[-1].higher) {
+        topology.edges[++edge] = {vertex, side->higher};
+        topology.edge_triangles[edge] = {side->triangle, -1};
+      } else if (topology.edge_triangles[edge][1] < 0) {
+        topology.edge_triangles[edge][1] = side->triangle;
       }
     }
   }

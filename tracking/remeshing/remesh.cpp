@@ -1,9 +1,12 @@
 #include "tracking/remeshing/remesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "tracking/mesh/edges_by_length.h"
 #include "tracking/mesh/editable_mesh.h"
+#include "tracking/mesh/keep_vertices.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -14,34 +17,25 @@ MeshTopology topology_of(const SurfaceMesh& mesh) {
   return build_topology(static_cast<int>(mesh.positions.size()), mesh.triangles);
 }
 
-// Edges whose length fulfils a condition, in the order of their length (ascending or descending), then of their index:
-// the outcome does not depend on chance.
+// Edges whose length fulfils a condition, as pairs of vertices.
 template <class Condition>
-std::vector<Edge> edges_by_length(const SurfaceMesh& mesh, Condition condition, bool longest_first) {
+std::vector<Edge> ordered_edges(const SurfaceMesh& mesh, EdgeOrder order, const Condition& condition) {
   const MeshTopology topology = topology_of(mesh);
-  const std::vector<double> lengths = edge_lengths(topology, mesh.positions);
-  std::vector<int> order;
-  for (int e = 0; e < static_cast<int>(lengths.size()); ++e) {
-    if (condition(lengths[e])) order.push_back(e);
-  }
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    if (lengths[a] != lengths[b]) return longest_first ? lengths[a] > lengths[b] : lengths[a] < lengths[b];
-    return a < b;
-  });
   std::vector<Edge> edges;
-  for (int e : order) edges.push_back(topology.edges[e]);
+  for (int e : edges_by_length(topology, mesh.positions, order, [&](int, double length) { return condition(length); }))
+    edges.push_back(topology.edges[e]);
   return edges;
 }
 
 int split_long_edges(const MetaballField& field, double longest, SurfaceMesh& mesh) {
-  const auto edges = edges_by_length(
-      mesh, [&](double length) { return length > longest; }, true);
+  const auto edges = ordered_edges(mesh, EdgeOrder::longest_first, [&](double length) { return length > longest; });
   if (edges.empty()) return 0;
   const std::size_t old_count = mesh.positions.size();
   EditableMesh editable(mesh.positions, mesh.triangles);
   for (const auto& [a, b] : edges) {
     if (editable.split(a, b) < 0) continue;
     mesh.rest_positions.push_back((mesh.rest_positions[a] + mesh.rest_positions[b]) / 2);
+    for (auto& layer : mesh.layers) layer.push_back((layer[a] + layer[b]) / 2);
     mesh.velocities.push_back((mesh.velocities[a] + mesh.velocities[b]) / 2);
     mesh.ids.push_back(mesh.next_id++);
   }
@@ -51,26 +45,8 @@ int split_long_edges(const MetaballField& field, double longest, SurfaceMesh& me
   return static_cast<int>(born.size());
 }
 
-// The attributes of the vertices that remain, in their new order.
-template <class T>
-void renumber(const std::vector<int>& number, std::size_t count, std::vector<T>& values) {
-  for (std::size_t vertex = 0; vertex < number.size(); ++vertex) {
-    if (number[vertex] >= 0) values[static_cast<std::size_t>(number[vertex])] = values[vertex];
-  }
-  values.resize(count);
-}
-
-// Drops the removed vertices with all their attributes.
-void compact(EditableMesh& editable, SurfaceMesh& mesh) {
-  const std::vector<int> number = editable.compact();
-  renumber(number, mesh.positions.size(), mesh.rest_positions);
-  renumber(number, mesh.positions.size(), mesh.velocities);
-  renumber(number, mesh.positions.size(), mesh.ids);
-}
-
 int collapse_short_edges(double shortest, double longest, SurfaceMesh& mesh) {
-  const auto edges = edges_by_length(
-      mesh, [&](double length) { return length < shortest; }, false);
+  const auto edges = ordered_edges(mesh, EdgeOrder::shortest_first, [&](double length) { return length < shortest; });
   if (edges.empty()) return 0;
   EditableMesh editable(mesh.positions, mesh.triangles);
   int count = 0;
@@ -80,16 +56,64 @@ int collapse_short_edges(double shortest, double longest, SurfaceMesh& mesh) {
     const int older = low_is_older ? low : high, younger = low_is_older ? high : low;
     count += editable.collapse(older, younger, longest) || editable.collapse(younger, older, longest);
   }
-  compact(editable, mesh);
+  keep_attributes(editable.compact(), mesh);
   return count;
 }
 
-int flip_bad_edges(double slack, SurfaceMesh& mesh) {
+double opposite_angle(const SurfaceMesh& mesh, int triangle, const Edge& edge) {
+  for (int vertex : mesh.triangles[triangle]) {
+    if (vertex != edge[0] && vertex != edge[1])
+      return angle_at(mesh.positions[vertex], mesh.positions[edge[0]], mesh.positions[edge[1]]);
+  }
+  return 0;
+}
+
+// Edges whose opposite angles add up to more than 180 degrees and the slack, ascending.
+std::vector<Edge> edges_to_flip(double slack, const SurfaceMesh& mesh) {
   const MeshTopology topology = topology_of(mesh);
+  std::vector<char> wanted(topology.edges.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t e = 0; e < std::ssize(wanted); ++e) {
+    const auto& [first, second] = topology.edge_triangles[e];
+    wanted[e] =
+        second >= 0 &&
+        opposite_angle(mesh, first, topology.edges[e]) + opposite_angle(mesh, second, topology.edges[e]) > M_PI + slack;
+  }
+  std::vector<Edge> edges;
+  for (std::size_t e = 0; e < wanted.size(); ++e) {
+    if (wanted[e]) edges.push_back(topology.edges[e]);
+  }
+  return edges;
+}
+
+int flip_bad_edges(double slack, SurfaceMesh& mesh) {
+  const std::vector<Edge> edges = edges_to_flip(slack, mesh);
+  if (edges.empty()) return 0;
   EditableMesh editable(mesh.positions, mesh.triangles);
   int count = 0;
-  for (const auto& [a, b] : topology.edges) count += editable.wants_flip(a, b, slack) && editable.flip(a, b);
+  for (const auto& [a, b] : edges) count += editable.wants_flip(a, b, slack) && editable.flip(a, b);
   return count;
+}
+
+// The vertex that had this id, for each of the new ones; -1 where there was none.
+std::vector<int> old_vertices(const std::vector<std::uint64_t>& old_ids, const std::vector<std::uint64_t>& ids) {
+  std::vector<std::pair<std::uint64_t, int>> known(old_ids.size());
+  for (std::size_t v = 0; v < old_ids.size(); ++v) known[v] = {old_ids[v], static_cast<int>(v)};
+  if (!std::is_sorted(known.begin(), known.end())) std::sort(known.begin(), known.end());
+  std::vector<int> old_of(ids.size(), -1);
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t v = 0; v < std::ssize(ids); ++v) {
+    const auto found = std::lower_bound(known.begin(), known.end(), std::pair{ids[v], -1});
+    if (found != known.end() && found->first == ids[v]) old_of[v] = found->second;
+  }
+  return old_of;
+}
+
+int edge_between(const MeshTopology& topology, int a, int b) {
+  for (const auto& [other, edge] : topology.ring(a)) {
+    if (other == b) return edge;
+  }
+  return -1;
 }
 
 }  // namespace
@@ -103,45 +127,16 @@ RemeshReport remesh(const MetaballField& field, const RemeshSettings& settings, 
   return report;
 }
 
-int collapse_triangles(const std::vector<int>& triangles, const std::vector<Vec3>& normals, double longest,
-                       SurfaceMesh& mesh) {
-  const std::vector<Triangle> before = mesh.triangles;
-  EditableMesh editable(mesh.positions, mesh.triangles);
-  int count = 0;
-  for (int t : triangles) {
-    std::array<Edge, 3> edges;
-    for (std::size_t corner = 0; corner < 3; ++corner) edges[corner] = {before[t][corner], before[t][(corner + 1) % 3]};
-    const auto length = [&](const Edge& e) { return (mesh.positions[e[0]] - mesh.positions[e[1]]).norm(); };
-    std::stable_sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return length(a) < length(b); });
-    for (const auto& [a, b] : edges) {
-      if (!editable.collapse_tangled(a, b, longest, normals) && !editable.collapse_tangled(b, a, longest, normals))
-        continue;
-      ++count;
-      break;
-    }
-  }
-  compact(editable, mesh);
-  return count;
-}
-
 std::vector<double> carry_rest_lengths(const std::vector<std::uint64_t>& old_ids, const MeshTopology& old_topology,
                                        const std::vector<double>& old_lengths, const SurfaceMesh& mesh,
                                        const MeshTopology& topology, double edge_length) {
-  using Named = std::pair<std::pair<std::uint64_t, std::uint64_t>, double>;  // an edge by the ids of its ends
-  std::vector<Named> known(old_lengths.size());
-  for (std::size_t e = 0; e < old_lengths.size(); ++e) {
-    const auto& [a, b] = old_topology.edges[e];
-    known[e] = {std::minmax({old_ids[a], old_ids[b]}), old_lengths[e]};
-  }
-  std::sort(known.begin(), known.end());
+  const std::vector<int> old_of = old_vertices(old_ids, mesh.ids);
   std::vector<double> lengths = edge_lengths(topology, mesh.positions);
-  for (std::size_t e = 0; e < lengths.size(); ++e) {
-    const auto& [a, b] = topology.edges[e];
-    const std::pair<std::uint64_t, std::uint64_t> ends = std::minmax({mesh.ids[a], mesh.ids[b]});
-    const auto found = std::lower_bound(known.begin(), known.end(), Named{ends, -1.0});
-    lengths[e] = found != known.end() && found->first == ends
-                     ? found->second
-                     : std::clamp(lengths[e], 0.7 * edge_length, 1.3 * edge_length);
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t e = 0; e < std::ssize(lengths); ++e) {
+    const int a = old_of[topology.edges[e][0]], b = old_of[topology.edges[e][1]];
+    const int old_edge = a >= 0 && b >= 0 ? edge_between(old_topology, a, b) : -1;
+    lengths[e] = old_edge >= 0 ? old_lengths[old_edge] : std::clamp(lengths[e], 0.7 * edge_length, 1.3 * edge_length);
   }
   return lengths;
 }

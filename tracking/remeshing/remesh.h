@@ -29,14 +29,6 @@ struct RemeshReport {
 /// @pre `mesh` is closed and two-manifold; it stays so.
 RemeshReport remesh(const MetaballField& field, const RemeshSettings& settings, SurfaceMesh& mesh);
 
-/// Collapses an edge of each of these triangles, the shortest that allows it; the tangle they form shrinks. Vertices
-/// that stay keep all they have.
-/// @param normals outward normals of the surface at the vertices
-/// @param longest no edge grows beyond it (m)
-/// @return how many edges
-int collapse_triangles(const std::vector<int>& triangles, const std::vector<Vec3>& normals, double longest,
-                       SurfaceMesh& mesh);
-
 /// Rest lengths of the springs after remeshing: an edge that was there before keeps its own, a new one takes its
 /// present length, held between 0.7 and 1.3 target lengths.
 /// @param old_ids, old_topology, old_lengths vertex ids, edges and rest lengths before

@@ -5,6 +5,7 @@
 
 #include "tracking/extraction/marching_cubes.h"
 #include "tracking/field/metaball_field.h"
+#include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/particles.h"
 
@@ -18,9 +19,19 @@ namespace flowskin::tracking {
 /// @pre There is at least one particle, and their rest positions are known.
 Vec3 rest_position_at(const MetaballField& field, const Particles& particles, const Vec3& x);
 
+/// The same for other places of the particles' material (m), one a particle.
+/// @pre There is at least one particle.
+Vec3 material_place_at(const MetaballField& field, const std::vector<Vec3>& particle_places, const Vec3& x);
+
 /// Distance between the rest position that each vertex carries and that of the particles beneath it (m): how far the
 /// texture has drifted off its material.
 std::vector<double> material_drift(const SurfaceMesh& mesh, const MetaballField& field, const Particles& particles);
+
+/// Holds the rest positions of a mesh within `limit` (m) of those of the particles beneath: farther ones are pulled
+/// back to that distance. A surface that is carried by the best of velocities still slips off its particles in time,
+/// and where fluid comes from an inlet, or up from inside, new surface would go on with the material of its neighbours.
+/// @return how many vertices were held back
+int limit_slip(double limit, const MetaballField& field, const Particles& particles, SurfaceMesh& mesh);
 
 /// How an old mesh hands its material over; lengths in metres.
 struct MaterialSettings {
@@ -29,13 +40,42 @@ struct MaterialSettings {
   double far_reach = 0;    ///< Farthest distance to the old mesh where particles know no rest positions.
 };
 
-/// A mesh of fresh geometry with its attributes: the rest position of the closest point of the old mesh that looks the
-/// same way, interpolated once over its triangle; where there is none, that of the particles beneath. The old mesh is
-/// preferred even where the particles have come to disagree with it: two truths side by side would tear the texture. A
-/// vertex keeps the id of an old one where each is the other's nearest; all others get new ids. Velocities are zero.
-/// Where particles know no rest positions, new surface takes the displacement of the closest point of the old mesh
-/// within far_reach, whichever way it looks: wrong by at most twice their distance where the material moved rigidly.
-/// Farther away, and where there is no old mesh, its own place.
+/// Tells where the material of a place on the surface was at rest: the rest position of the closest point of an old
+/// surface that looks the same way, interpolated once over its triangle; where there is none, that of the particles
+/// beneath. The old surface is preferred even where the particles have come to disagree with it: two truths side by
+/// side would tear the texture. Where particles know no rest positions, new surface takes the displacement of the
+/// closest point of the old one within far_reach, whichever way it looks: wrong by at most twice their distance where
+/// the material moved rigidly. Farther away, and where there is no old surface, its own place.
+class MaterialCarrier {
+ public:
+  /// Keeps references to all.
+  MaterialCarrier(const std::vector<Vec3>& positions, const std::vector<Vec3>& rest_positions,
+                  const std::vector<Triangle>& triangles, const MetaballField& field, const Particles& particles,
+                  const MaterialSettings& settings);
+  /// @param normal outward, of the surface at x
+  Vec3 rest_position(const Vec3& x, const Vec3& normal) const;
+  /// The same for another place of the material than that at rest.
+  /// @param on_mesh of the old mesh's vertices  @param on_particles of the particles; empty: unknown
+  Vec3 place(const Vec3& x, const Vec3& normal, const std::vector<Vec3>& on_mesh,
+             const std::vector<Vec3>& on_particles) const;
+
+ private:
+  Vec3 interpolated(const MeshPoint& point, const std::vector<Vec3>& values) const;
+
+  const std::vector<Vec3>& positions_;
+  const std::vector<Vec3>& rest_positions_;
+  const std::vector<Triangle>& triangles_;
+  const MetaballField& field_;
+  const Particles& particles_;
+  MaterialSettings settings_;
+  ClosestPointTree tree_;
+};
+
+/// The places of layer k of the particles; none where they are unknown.
+const std::vector<Vec3>& particle_layer(const Particles& particles, std::size_t k);
+
+/// A mesh of fresh geometry with its attributes: rest positions and layers as MaterialCarrier says. A vertex keeps the
+/// id of an old one where each is the other's nearest; all others get new ids. Velocities are zero.
 /// @param old_mesh at the time of the field; may be empty
 /// @param normals outward normals of the geometry's vertices
 SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& geometry,

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "tracking/field/neighborhoods.h"
 #include "tracking/velocity/motion_rows.h"
 
 namespace flowskin::tracking {
@@ -35,11 +36,9 @@ Confidence field_confidence(const SurfacePoint& point) {
 
 std::vector<Confidence> field_confidence(const MetaballField& field, const std::vector<Vec3>& positions) {
   std::vector<Confidence> confidences(positions.size());
-  const auto count = static_cast<std::ptrdiff_t>(positions.size());
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::ptrdiff_t v = 0; v < count; ++v) {
-    confidences[v] = field_confidence(SurfacePoint(field.jet(positions[v]), field.settings()));
-  }
+  Neighborhoods(field, positions).for_each([&](int v, const LocalField& local) {
+    confidences[v] = field_confidence(SurfacePoint(local.jet(positions[v]), field.settings()));
+  });
   return confidences;
 }
 

@@ -96,21 +96,20 @@ class CoupledSystem {
  private:
   void add_field_rows(const MetaballField& field, const std::vector<Vec3>& positions) {
     const FieldSettings& settings = field.settings();
-#pragma omp parallel for schedule(dynamic, 64)
-    for (int v = 0; v < count_; ++v) {
+    Neighborhoods(field, positions).for_each([&](int v, const LocalField& local) {
       places_[v] = positions[v] / settings.radius;
       blocks_[v].setZero();
       right_side_[v].setZero();
-      const SurfacePoint point(field.jet(positions[v]), settings);
-      if (!point.defined) continue;
-      const MotionRows<Motion> rows = field_rows(field, positions[v], point, weights_.rows, Motion());
+      const SurfacePoint point(local.jet(positions[v]), settings);
+      if (!point.defined) return;
+      const MotionRows<Motion> rows = field_rows(local, positions[v], point, weights_.rows, Motion());
       const Matrix block = rows.matrix.transpose() * rows.matrix;
       const Vector right = rows.matrix.transpose() * rows.right_side;
-      if (!block.allFinite() || !right.allFinite()) continue;
+      if (!block.allFinite() || !right.allFinite()) return;
       blocks_[v] = block;
       right_side_[v] = right;
       seen_[v] = 1;
-    }
+    });
   }
 
   // Columns: the velocities at distance d that the gradient parameters give.

@@ -1,6 +1,7 @@
 // The particles' own flow, corrected by the field's equations where the particles contradict each other.
 #include <Eigen/Cholesky>
 
+#include "tracking/field/neighborhoods.h"
 #include "tracking/velocity/methods.h"
 #include "tracking/velocity/motion_rows.h"
 #include "tracking/velocity/moving_least_squares.h"
@@ -43,7 +44,7 @@ LocalFlow with_significant_strain(LocalFlow flow) {
 }
 
 /// Least squares of the field's ten rows and of the distance to the particles' flow.
-Vec3 hybrid_velocity(const MetaballField& field, const Vec3& x) {
+Vec3 hybrid_velocity(const LocalField& field, const Vec3& x) {
   const double radius = field.settings().radius;
   const LocalFlow flow = with_significant_strain(local_flow(field, x));
   const SurfacePoint point(field.jet(x), field.settings());
@@ -65,9 +66,9 @@ class HybridVelocity final : public VelocityMethod {
                 std::vector<Vec3>& velocities) const override {
     require_particle_velocities(field, "hybrid");
     velocities.resize(positions.size());
-    const auto count = static_cast<std::ptrdiff_t>(positions.size());
-#pragma omp parallel for schedule(dynamic, 64)
-    for (std::ptrdiff_t i = 0; i < count; ++i) velocities[i] = hybrid_velocity(field, positions[i]);
+    Neighborhoods(field, positions).for_each([&](int i, const LocalField& local) {
+      velocities[i] = hybrid_velocity(local, positions[i]);
+    });
   }
 };
 

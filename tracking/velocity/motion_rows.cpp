@@ -65,12 +65,12 @@ MotionRows<AffineMotion> affine_rows(const SurfacePoint& point, const KernelMome
   return rows;
 }
 
-MotionRows<RigidMotion> field_rows(const MetaballField& /*field*/, const Vec3& /*x*/, const SurfacePoint& point,
+MotionRows<RigidMotion> field_rows(const LocalField& /*field*/, const Vec3& /*x*/, const SurfacePoint& point,
                                    const RowWeights& weights, RigidMotion /*motion*/) {
   return rigid_rows(point, weights);
 }
 
-MotionRows<AffineMotion> field_rows(const MetaballField& field, const Vec3& x, const SurfacePoint& point,
+MotionRows<AffineMotion> field_rows(const LocalField& field, const Vec3& x, const SurfacePoint& point,
                                     const RowWeights& weights, AffineMotion /*motion*/) {
   return affine_rows(point, field.moments(x), weights);
 }

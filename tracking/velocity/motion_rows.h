@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "tracking/field/kernel_moments.h"
+#include "tracking/field/neighborhoods.h"
 #include "tracking/velocity/surface_point.h"
 
 namespace flowskin::tracking {
@@ -76,9 +77,9 @@ MotionRows<AffineMotion> affine_rows(const SurfacePoint& point, const KernelMome
                                      const RowWeights& weights);
 
 /// Either of them for the point x (m) of the field.
-MotionRows<RigidMotion> field_rows(const MetaballField& field, const Vec3& x, const SurfacePoint& point,
+MotionRows<RigidMotion> field_rows(const LocalField& field, const Vec3& x, const SurfacePoint& point,
                                    const RowWeights& weights, RigidMotion motion);
-MotionRows<AffineMotion> field_rows(const MetaballField& field, const Vec3& x, const SurfacePoint& point,
+MotionRows<AffineMotion> field_rows(const LocalField& field, const Vec3& x, const SurfacePoint& point,
                                     const RowWeights& weights, AffineMotion motion);
 
 }  // namespace flowskin::tracking

@@ -23,12 +23,16 @@ struct Sample {
   Vec3 velocity;  // m/s
 };
 
-std::vector<Sample>& samples_around(const MetaballField& field, const Vec3& x) {
+/// Where a thread keeps the neighbours of its point.
+std::vector<int>& scratch() {
   thread_local std::vector<int> found;
+  return found;
+}
+
+std::vector<Sample>& samples_of(const std::vector<int>& found, const MetaballField& field, const Vec3& x) {
   thread_local std::vector<Sample> samples;
   samples.clear();
   const double radius = field.settings().radius;
-  field.neighbors(x, radius, found);
   for (const int i : found) {
     const Vec3 offset = (field.positions()[i] - x) / radius;
     const double u = std::max(0.0, 1 - offset.squaredNorm());
@@ -50,11 +54,10 @@ Mat3 damped_inverse(const Mat3& covariance) {
   return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
 }
 
-}  // namespace
-
-LocalFlow local_flow(const MetaballField& field, const Vec3& x) {
+/// The flow that fits these particles best.
+LocalFlow flow_of(const std::vector<int>& found, const MetaballField& field, const Vec3& x) {
   LocalFlow flow;
-  std::vector<Sample>& samples = samples_around(field, x);
+  std::vector<Sample>& samples = samples_of(found, field, x);
   flow.neighbors = static_cast<int>(samples.size());
 
   double weights = 0;
@@ -102,6 +105,18 @@ LocalFlow local_flow(const MetaballField& field, const Vec3& x) {
   // Velocities that differ by rounding alone have no spread.
   if (spread > least_spread_of_speed * all) flow.misfit = std::min(1.0, std::sqrt(rest / spread));
   return flow;
+}
+
+}  // namespace
+
+LocalFlow local_flow(const MetaballField& field, const Vec3& x) {
+  field.neighbors(x, field.settings().radius, scratch());
+  return flow_of(scratch(), field, x);
+}
+
+LocalFlow local_flow(const LocalField& field, const Vec3& x) {
+  field.neighbors(x, scratch());
+  return flow_of(scratch(), field.field(), x);
 }
 
 }  // namespace flowskin::tracking

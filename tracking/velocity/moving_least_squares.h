@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tracking/field/metaball_field.h"
+#include "tracking/field/neighborhoods.h"
 
 namespace flowskin::tracking {
 
@@ -25,5 +26,6 @@ struct LocalFlow {
 /// four particles or fewer says little, as a linear flow fits them in most cases. Never NaN; a field without velocities
 /// is at rest.
 LocalFlow local_flow(const MetaballField& field, const Vec3& x);
+LocalFlow local_flow(const LocalField& field, const Vec3& x);
 
 }  // namespace flowskin::tracking

@@ -1,4 +1,5 @@
 // The particles' own velocity by moving least squares; the surface is met by the field's normal velocity.
+#include "tracking/field/neighborhoods.h"
 #include "tracking/velocity/methods.h"
 #include "tracking/velocity/moving_least_squares.h"
 #include "tracking/velocity/particle_velocities.h"
@@ -13,13 +14,11 @@ class SimulationVelocity final : public VelocityMethod {
                 std::vector<Vec3>& velocities) const override {
     require_particle_velocities(field, "simulation");
     velocities.resize(positions.size());
-    const auto count = static_cast<std::ptrdiff_t>(positions.size());
-#pragma omp parallel for schedule(dynamic, 64)
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const SurfacePoint point(field.jet(positions[i]), field.settings());
-      const Vec3 v = local_flow(field, positions[i]).velocity;
+    Neighborhoods(field, positions).for_each([&](int i, const LocalField& local) {
+      const SurfacePoint point(local.jet(positions[i]), field.settings());
+      const Vec3 v = local_flow(local, positions[i]).velocity;
       velocities[i] = point.defined ? meeting_surface(point, v, field.settings().radius) : Vec3(Vec3::Zero());
-    }
+    });
   }
 
  private:

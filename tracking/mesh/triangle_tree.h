@@ -1,0 +1,52 @@
+// Tree of bounding boxes over the triangles of a mesh.
+#pragma once
+
+#include <vector>
+
+#include "tracking/mesh/surface_mesh.h"
+
+namespace flowskin::tracking {
+
+/// A box along the axes, in any unit of length; it includes its border.
+struct Box {
+  Vec3 low, high;
+
+  bool overlaps(const Box& other) const {
+    // All six comparisons are made: a branch for each would cost more.
+    int count = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      count += static_cast<int>(low[axis] <= other.high[axis]) + static_cast<int>(other.low[axis] <= high[axis]);
+    return count == 6;
+  }
+  /// Square of the distance of a point to the box; 0 inside.
+  double squared_distance(const Vec3& x) const { return (x - x.cwiseMax(low).cwiseMin(high)).squaredNorm(); }
+};
+
+Box bounding_box(const std::vector<Vec3>& positions, const Triangle& triangle);
+
+/// A binary tree in which each node halves its triangles along the axis in which their centres spread most. Depends on
+/// nothing but the mesh.
+class TriangleTree {
+ public:
+  struct Node {
+    Box box;
+    int begin, end;  ///< Its triangles are order()[begin] to order()[end - 1].
+    int right;       ///< The right child; the left one follows its parent. -1: a leaf.
+  };
+
+  /// @pre Positions are finite and indices in range.
+  TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+
+  const std::vector<Node>& nodes() const { return nodes_; }  ///< The root first; empty without triangles.
+  const std::vector<int>& order() const { return order_; }   ///< Every triangle once.
+  const std::vector<Box>& boxes() const { return boxes_; }   ///< Around each triangle, in this order.
+
+ private:
+  void build(int index, int begin, int end, const std::vector<Vec3>& centers, const std::vector<Box>& boxes);
+
+  std::vector<int> order_;
+  std::vector<Box> boxes_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace flowskin::tracking

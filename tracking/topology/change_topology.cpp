@@ -1,0 +1,344 @@
+#include "tracking/topology/change_topology.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "tracking/extraction/marching_cubes.h"
+#include "tracking/fairing/bad_triangles.h"
+#include "tracking/fairing/relaxation.h"
+#include "tracking/mesh/keep_vertices.h"
+#include "tracking/mesh/mesh_measures.h"
+#include "tracking/mesh/self_intersections.h"
+#include "tracking/topology/disagreement.h"
+#include "tracking/topology/replace_region.h"
+#include "tracking/topology/strays.h"
+
+namespace flowskin::tracking {
+namespace {
+
+constexpr int kRounds = 6;
+constexpr double kDust = 0.05;                       // volume of a component that is not worth its triangles, in cells
+constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};  // cells; a thin neck is near its stumps
+constexpr int kGrowths[] = {1, 2, 3, 4, 5, 6, 8, 10};  // layers of cells around a place of disagreement, until it works
+constexpr int kFocus = 2;  // layers of cells around a replaced region that are looked at again
+
+std::vector<Box> boxes_of(const SparseGrid& grid, const SurfaceMesh& mesh) {
+  std::vector<Box> boxes(mesh.triangles.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t t = 0; t < std::ssize(boxes); ++t) boxes[t] = box_of(grid, mesh.triangles[t], mesh.positions);
+  return boxes;
+}
+
+// Triangles that are off the surface, wrong side out, without area, or that intersect. A sharp fold may be: a rim of
+// fluid can be thinner than an edge.
+std::vector<int> spoilt_triangles(const SurfaceMesh& mesh, const Projection& projection,
+                                  const std::vector<int>& looked_at) {
+  std::vector<char> failed(mesh.positions.size(), 0), spoilt(looked_at.size());
+  for (int vertex : projection.failed) failed[vertex] = 1;
+  std::vector<Triangle> triangles(looked_at.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t i = 0; i < std::ssize(looked_at); ++i) {
+    const Triangle& triangle = triangles[i] = mesh.triangles[looked_at[i]];
+    spoilt[i] = failed[triangle[0]] || failed[triangle[1]] || failed[triangle[2]] ||
+                is_degenerate(triangle, mesh.positions) || is_inverted(triangle, mesh.positions, projection.normals);
+  }
+  for (const auto& [first, second] : self_intersections(mesh.positions, triangles)) spoilt[first] = spoilt[second] = 1;
+  std::vector<int> found;
+  for (std::size_t i = 0; i < looked_at.size(); ++i) {
+    if (spoilt[i]) found.push_back(looked_at[i]);
+  }
+  return found;
+}
+
+// All triangles, or those that meet the cells.
+std::vector<int> triangles_in(const CellSet* cells, const std::vector<Box>& boxes) {
+  std::vector<int> found;
+  for (int t = 0; t < static_cast<int>(boxes.size()); ++t) {
+    if (!cells || meets(*cells, boxes[t].low, boxes[t].high)) found.push_back(t);
+  }
+  return found;
+}
+
+// A region to be replaced.
+struct Region {
+  CellSet cells;
+  Finish finish;
+};
+
+// What is found in one round, and where to look in the next.
+class PlacesToMend {
+ public:
+  PlacesToMend(const FieldGrid& fresh, double depth) : fresh_(fresh), depth_(depth) {}
+
+  // The regions with something to mend. What fresh, evened surface did not mend gets surface straight from marching
+  // cubes, which does not intersect itself; what that does not mend is left as it is.
+  std::vector<Region> find(const SurfaceMesh& mesh, const Projection& projection) {
+    std::vector<CellSet::Cell> cells;
+    // Fresh surface agrees with the signs of the grid.
+    if (!focus_) cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, mesh.positions, mesh.triangles);
+    const std::vector<Box> boxes = boxes_of(fresh_.grid, mesh);
+    const std::vector<int> looked_at = triangles_in(focus_ ? &*focus_ : nullptr, boxes);
+    for (int t : spoilt_triangles(mesh, projection, looked_at)) add_cells(boxes[t].low, boxes[t].high, cells);
+    std::erase_if(cells, [&](const CellSet::Cell& cell) { return twice_.contains(cell); });
+    const CellSet again([&] {
+      std::vector<CellSet::Cell> known = cells;
+      std::erase_if(known, [&](const CellSet::Cell& cell) { return !once_.contains(cell); });
+      return known;
+    }());
+    add(cells, once_);
+    add(again.cells(), twice_);
+    return regions(CellSet(std::move(cells)), again);
+  }
+
+  // Parts that only one of the two surfaces has; looked for more and more closely.
+  std::vector<Region> find_strays(const SurfaceMesh& mesh, const SurfaceGeometry& expected) {
+    if (stray_round_ == std::ssize(kStrayReaches)) return {};
+    const double spacing = fresh_.grid.spacing();
+    const Strays strays(fresh_.grid, kStrayReaches[stray_round_] * spacing, mesh.positions, mesh.triangles, expected);
+    while (stray_round_ < std::ssize(kStrayReaches)) {
+      const CellSet cells(strays.farther_than(kStrayReaches[stray_round_++] * spacing));
+      if (!cells.empty()) return regions(cells, {});
+    }
+    return {};
+  }
+
+ private:
+  static void add(const std::vector<CellSet::Cell>& cells, CellSet& set) {
+    std::vector<CellSet::Cell> all = set.cells();
+    all.insert(all.end(), cells.begin(), cells.end());
+    set = CellSet(std::move(all));
+  }
+
+  std::vector<Region> regions(const CellSet& places, const CellSet& again) {
+    std::vector<Region> found;
+    const CellSet widened = places.dilated(1);
+    for (const CellSet& cells : widened.components()) {
+      const bool is_known = std::any_of(again.cells().begin(), again.cells().end(),
+                                        [&](const CellSet::Cell& cell) { return cells.contains(cell); });
+      found.push_back({cells, is_known ? Finish::raw : Finish::evened});
+    }
+    focus_ = widened.dilated(kFocus);
+    return found;
+  }
+
+  const FieldGrid& fresh_;
+  double depth_;
+  CellSet once_, twice_;  // cells that have been named
+  std::optional<CellSet> focus_;
+  int stray_round_ = 0;
+};
+
+// Of a closed surface.
+SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
+  // Each triangle has three sides, each edge two of them.
+  const int edges = static_cast<int>(triangles.size()) * 3 / 2;
+  return {mesh_components(positions, triangles).count,
+          static_cast<int>(positions.size()) - edges + static_cast<int>(triangles.size())};
+}
+
+// A mesh while regions of it are replaced: removed triangles and vertices stay in their places until the end.
+class MeshUnderRepair {
+ public:
+  MeshUnderRepair(const FieldGrid& fresh, SurfaceMesh& mesh, Projection& projection)
+      : fresh_(fresh), mesh_(mesh), projection_(projection), old_count_(mesh.positions.size()) {
+    mend_.positions = mesh.positions;
+    mend_.normals = projection.normals;
+    mend_.triangles = mesh.triangles;
+    mend_.alive.assign(mesh.triangles.size(), 1);
+    mend_.boxes = boxes_of(fresh.grid, mesh);
+  }
+
+  // Patches for all places at once, then one after the other where they get in each other's way. Returns how many
+  // places were replaced.
+  int replace(const std::vector<Region>& places, std::string& why) {
+    const int base = static_cast<int>(mend_.positions.size());
+    std::vector<std::optional<MeshPatch>> patches(places.size());
+    std::vector<std::string> whys(places.size());
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::ptrdiff_t p = 0; p < std::ssize(places); ++p) patches[p] = patch_for(places[p], whys[p]);
+    int replaced = 0;
+    for (std::size_t p = 0; p < places.size(); ++p) {
+      const bool fits = patches[p] && std::all_of(patches[p]->removed.begin(), patches[p]->removed.end(),
+                                                  [&](int t) { return mend_.alive[t] != 0; });
+      if (fits) {
+        renumber_born(base, *patches[p]);
+      } else {
+        patches[p] = patch_for(places[p], whys[p]);
+      }
+      if (patches[p]) {
+        apply(*patches[p]);
+        ++replaced;
+      } else {
+        why = whys[p];
+      }
+    }
+    return replaced;
+  }
+
+  // Takes out the components for which `is_dust` holds.
+  void remove(const MeshComponents& components, const std::vector<char>& is_dust) {
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (is_dust[components.of_vertex[mesh_.triangles[t][0]]]) mend_.alive[t] = 0;
+    }
+  }
+
+  // Gives the new vertices their attributes, drops what is not used any more, and hands the mesh back.
+  void finish(const Particles& particles, const MaterialSettings& settings, TopologyReport& report) {
+    dress_new_vertices(particles, settings);
+    const std::vector<int> number = compact(report);
+    take_over_projection(number);
+  }
+
+ private:
+  std::optional<MeshPatch> patch_for(const Region& place, std::string& why) const {
+    for (int layers : kGrowths) {
+      if (auto patch = replace_region(fresh_, place.cells.dilated(layers - 1), mend_, place.finish, why)) return patch;
+    }
+    return std::nullopt;
+  }
+
+  // Other patches have brought vertices since the mesh had `base` of them.
+  void renumber_born(int base, MeshPatch& patch) const {
+    const int offset = static_cast<int>(mend_.positions.size()) - base;
+    for (Triangle& triangle : patch.triangles) {
+      for (int& vertex : triangle) vertex += vertex >= base ? offset : 0;
+    }
+  }
+
+  void apply(const MeshPatch& patch) {
+    for (int t : patch.removed) mend_.alive[t] = 0;
+    mend_.positions.insert(mend_.positions.end(), patch.born.begin(), patch.born.end());
+    mend_.normals.insert(mend_.normals.end(), patch.born_normals.begin(), patch.born_normals.end());
+    for (const Triangle& triangle : patch.triangles) {
+      mend_.triangles.push_back(triangle);
+      mend_.boxes.push_back(box_of(fresh_.grid, triangle, mend_.positions));
+      mend_.alive.push_back(1);
+    }
+  }
+
+  void dress_new_vertices(const Particles& particles, const MaterialSettings& settings) {
+    std::vector<Triangle> gone;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (!mend_.alive[t]) gone.push_back(mesh_.triangles[t]);
+    }
+    const MaterialCarrier material(mesh_.positions, mesh_.rest_positions, gone, fresh_.field, particles, settings);
+    const int first = static_cast<int>(old_count_), count = static_cast<int>(mend_.positions.size());
+    std::vector<Vec3> rest(count - first);
+#pragma omp parallel for schedule(dynamic, 16)
+    for (int v = first; v < count; ++v) {
+      rest[v - first] = material.rest_position(mend_.positions[v], mend_.normals[v]);
+    }
+    mesh_.rest_positions.insert(mesh_.rest_positions.end(), rest.begin(), rest.end());
+    for (std::size_t k = 0; k < mesh_.layers.size(); ++k) {
+      const std::vector<Vec3>& beneath = particle_layer(particles, k);
+#pragma omp parallel for schedule(dynamic, 16)
+      for (int v = first; v < count; ++v)
+        rest[v - first] = material.place(mend_.positions[v], mend_.normals[v], mesh_.layers[k], beneath);
+      mesh_.layers[k].insert(mesh_.layers[k].end(), rest.begin(), rest.end());
+    }
+    mesh_.velocities.resize(count, Vec3::Zero());
+    mesh_.ids.resize(count, 0);
+  }
+
+  // Returns the new number of each vertex, -1 for those that are gone.
+  std::vector<int> compact(TopologyReport& report) {
+    const std::vector<Vec3>& positions = mend_.positions;
+    std::vector<char> used(positions.size(), 0);
+    mesh_.triangles.clear();
+    for (std::size_t t = 0; t < mend_.triangles.size(); ++t) {
+      if (!mend_.alive[t]) continue;
+      mesh_.triangles.push_back(mend_.triangles[t]);
+      for (int vertex : mend_.triangles[t]) used[vertex] = 1;
+    }
+    std::vector<int> number(used.size(), -1);
+    int count = 0;
+    for (std::size_t v = 0; v < used.size(); ++v) {
+      if (!used[v]) continue;
+      number[v] = count++;
+      if (v < old_count_) continue;
+      mesh_.ids[v] = mesh_.next_id++;
+      ++report.born;
+    }
+    mesh_.positions = positions;
+    keep_numbered(number, mesh_.positions);
+    keep_attributes(number, mesh_);
+    for (Triangle& triangle : mesh_.triangles) {
+      for (int& vertex : triangle) vertex = number[vertex];
+    }
+    return number;
+  }
+
+  // Old vertices have not moved; the new ones are projected once more, which tells whether they have arrived.
+  void take_over_projection(const std::vector<int>& number) {
+    std::vector<int> moved;
+    for (int vertex : projection_.failed) {
+      if (number[vertex] >= 0) moved.push_back(number[vertex]);
+    }
+    projection_.failed.clear();
+    for (std::size_t v = old_count_; v < number.size(); ++v) {
+      if (number[v] >= 0) moved.push_back(number[v]);
+    }
+    projection_.normals.resize(number.size());
+    projection_.distances.resize(number.size());
+    keep_numbered(number, projection_.normals);
+    keep_numbered(number, projection_.distances);
+    project_moved(fresh_.field, default_projection(fresh_.field.settings()), moved, mesh_.positions, projection_);
+  }
+
+  const FieldGrid& fresh_;
+  SurfaceMesh& mesh_;
+  Projection& projection_;
+  std::size_t old_count_;
+  MeshToMend mend_;
+};
+
+// Takes out the components that enclose next to nothing, either way round.
+void sweep(const FieldGrid& fresh, const Particles& particles, const TopologySettings& settings, SurfaceMesh& mesh,
+           Projection& projection, TopologyReport& report) {
+  const double least_volume = kDust * std::pow(fresh.grid.spacing(), 3);
+  const MeshComponents components = mesh_components(mesh.positions, mesh.triangles);
+  std::vector<char> is_dust(components.count);
+  for (int c = 0; c < components.count; ++c) is_dust[c] = std::abs(components.volumes[c]) < least_volume;
+  if (std::find(is_dust.begin(), is_dust.end(), 1) == is_dust.end()) return;
+  MeshUnderRepair repair(fresh, mesh, projection);
+  repair.remove(components, is_dust);
+  repair.finish(particles, settings.material, report);
+}
+
+}  // namespace
+
+TopologyReport change_topology(const MetaballField& field, const Particles& particles, const TopologySettings& settings,
+                               SurfaceMesh& mesh, Projection& projection) {
+  const SparseGrid grid =
+      SparseGrid::of_particles(field.positions(), field.settings(), settings.edge_length, field.shares());
+  const FieldGrid fresh{field, grid};
+  const SurfaceGeometry expected = march(grid);
+  TopologyReport report;
+  report.expected = counts_of(expected.positions, expected.triangles);
+  PlacesToMend to_mend(fresh, settings.depth);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Region> regions = to_mend.find(mesh, projection);
+    report.counts = counts_of(mesh.positions, mesh.triangles);
+    if (regions.empty() && !(report.counts == report.expected)) regions = to_mend.find_strays(mesh, expected);
+    if (regions.empty()) break;
+    if (!settings.local) {
+      report.stubborn = static_cast<int>(regions.size());
+      report.why = "mesh and field disagree";
+      break;
+    }
+    MeshUnderRepair repair(fresh, mesh, projection);
+    const int replaced = repair.replace(regions, report.why);
+    report.stubborn += static_cast<int>(regions.size()) - replaced;
+    report.regions += replaced;
+    repair.finish(particles, settings.material, report);
+  }
+  if (report.regions > 0) {
+    sweep(fresh, particles, settings, mesh, projection, report);
+    report.counts = counts_of(mesh.positions, mesh.triangles);
+  }
+  return report;
+}
+
+}  // namespace flowskin::tracking

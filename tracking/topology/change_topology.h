@@ -1,0 +1,49 @@
+// Lets the topology of a mesh follow the field: regions where the two disagree are replaced. See docs/topology.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tracking/advection/projection.h"
+#include "tracking/field/metaball_field.h"
+#include "tracking/mesh/surface_mesh.h"
+#include "tracking/particles.h"
+#include "tracking/topology/material.h"
+
+namespace flowskin::tracking {
+
+struct TopologySettings {
+  double edge_length = 0;  ///< Of fresh surface, and the spacing of the grid on which mesh and field are compared (m).
+  double depth = 0;        ///< Disagreements less deep than this are let pass (m).
+  bool local = true;       ///< Replace the regions; false: only count them, as stubborn.
+  MaterialSettings material;
+};
+
+/// What tells surfaces of different topology apart.
+struct SurfaceCounts {
+  int components = 0;
+  int euler = 0;  ///< Euler characteristic.
+  bool operator==(const SurfaceCounts&) const = default;
+};
+
+/// What was done.
+struct TopologyReport {
+  int regions = 0;         ///< Replaced.
+  int stubborn = 0;        ///< Regions that could not be replaced.
+  std::string why;         ///< Why the last of those could not be.
+  int born = 0;            ///< Vertices.
+  SurfaceCounts counts;    ///< Of the mesh, in the end.
+  SurfaceCounts expected;  ///< Of a fresh extraction.
+  bool changed() const { return regions > 0; }
+};
+
+/// Replaces the regions of a mesh where it and the sign of the field disagree (Wojtan et al. 2009; for SPH Yu et al.
+/// 2012), where triangles intersect, have no area or look inwards, and where vertices could not be put onto the
+/// surface. Vertices outside keep position, id and all attributes, and their order. New ones take their material as
+/// MaterialCarrier says, and new ids. In the end the mesh has as many parts and holes as a fresh extraction; where
+/// features are smaller than a cell they may differ, and `counts` and `expected` tell.
+/// @param projection of the mesh's vertices; brought up to date
+TopologyReport change_topology(const MetaballField& field, const Particles& particles, const TopologySettings& settings,
+                               SurfaceMesh& mesh, Projection& projection);
+
+}  // namespace flowskin::tracking

@@ -1,0 +1,122 @@
+#include "tracking/topology/disagreement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tracking/topology/grid_crossings.h"
+
+namespace flowskin::tracking {
+namespace {
+
+using Cell = CellSet::Cell;
+
+// A place to be looked at, in grid coordinates, with the winding number of the mesh there.
+struct Probe {
+  Vec3 coordinates;
+  int winding;
+};
+
+// Of lines along one axis: places between crossings that lie on the same grid edge.
+void probe_edges(const std::vector<GridCrossing>& crossings, int axis, std::vector<Probe>& probes) {
+  for_each_line(crossings, [&](const GridCrossing* begin, const GridCrossing* end) {
+    int winding = 0;
+    for (const GridCrossing* crossing = begin; crossing + 1 < end; ++crossing) {
+      winding += crossing->change;
+      if (std::floor(crossing->place) != std::floor(crossing[1].place)) continue;
+      Probe probe{Vec3::Zero(), winding};
+      probe.coordinates[axis] = (crossing->place + crossing[1].place) / 2;
+      probe.coordinates[(axis + 1) % 3] = crossing->line[0];
+      probe.coordinates[(axis + 2) % 3] = crossing->line[1];
+      probes.push_back(probe);
+    }
+  });
+}
+
+// The crossings of lines along z, by line.
+class Columns {
+ public:
+  explicit Columns(const std::vector<GridCrossing>& crossings) {
+    for_each_line(crossings, [&](const GridCrossing* begin, const GridCrossing* end) {
+      lines_.push_back({begin->line, begin, end});
+    });
+  }
+
+  // Calls visit(k, winding) for the nodes first to last of a line.
+  template <class Visit>
+  void walk(const std::array<int, 2>& line, int first, int last, const Visit& visit) const {
+    const auto found = std::lower_bound(lines_.begin(), lines_.end(), line,
+                                        [](const Line& a, const std::array<int, 2>& b) { return a.line < b; });
+    const bool known = found != lines_.end() && found->line == line;
+    const GridCrossing* next = known ? found->begin : nullptr;
+    const GridCrossing* end = known ? found->end : nullptr;
+    int winding = 0;
+    for (int k = first; k <= last; ++k) {
+      for (; next != end && next->place < k; ++next) winding += next->change;
+      visit(k, winding);
+    }
+  }
+
+ private:
+  struct Line {
+    std::array<int, 2> line;
+    const GridCrossing *begin, *end;
+  };
+  std::vector<Line> lines_;
+};
+
+// Nodes whose winding number and value do not agree.
+std::vector<Probe> probe_nodes(const SparseGrid& grid, const std::vector<GridCrossing>& crossings) {
+  constexpr int side = SparseGrid::kSide;
+  const Columns columns(crossings);
+  const int count = static_cast<int>(grid.blocks().size());
+  std::vector<std::vector<Probe>> of_block(count);
+#pragma omp parallel for schedule(dynamic, 16)
+  for (int b = 0; b < count; ++b) {
+    const SparseGrid::Block& block = grid.blocks()[b];
+    const Cell first = {side * block.place[0], side * block.place[1], side * block.place[2]};
+    for (int i = 0; i < side; ++i) {
+      for (int j = 0; j < side; ++j) {
+        const double* values = block.values.data() + SparseGrid::node_in_block(i, j, 0);
+        columns.walk({first[0] + i, first[1] + j}, first[2], first[2] + side - 1, [&](int k, int winding) {
+          if (winding == (values[k - first[2]] > 0 ? 1 : 0)) return;
+          of_block[b].push_back({Vec3(first[0] + i, first[1] + j, k), winding});
+        });
+      }
+    }
+  }
+  std::vector<Probe> probes;
+  for (const auto& found : of_block) probes.insert(probes.end(), found.begin(), found.end());
+  return probes;
+}
+
+}  // namespace
+
+std::vector<Cell> disagreeing_cells(const MetaballField& field, const SparseGrid& grid, double depth,
+                                    const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
+  std::array<std::vector<GridCrossing>, 3> crossings;
+  for (int axis = 0; axis < 3; ++axis) crossings[axis] = grid_crossings(grid, axis, positions, triangles);
+
+  std::vector<Probe> probes = probe_nodes(grid, crossings[2]);
+  for (int axis = 0; axis < 3; ++axis) probe_edges(crossings[axis], axis, probes);
+
+  std::vector<char> disagrees(probes.size());
+#pragma omp parallel for schedule(dynamic, 64)
+  for (int p = 0; p < static_cast<int>(probes.size()); ++p) {
+    const Probe& probe = probes[p];
+    const Vec3 x = grid.position({0, 0, 0}) + grid.spacing() * probe.coordinates;
+    Vec3 gradient;
+    const double f = field.value(x, gradient);
+    const bool differs = probe.winding != (f > 0 ? 1 : 0);
+    disagrees[p] = differs && (probe.winding < 0 || probe.winding > 1 || std::abs(f) > depth * gradient.norm());
+  }
+  std::vector<Cell> cells;
+  for (std::size_t p = 0; p < probes.size(); ++p) {
+    if (!disagrees[p]) continue;
+    // All cells that it lies in or on.
+    const Vec3& x = probes[p].coordinates;
+    add_cells(x.array().ceil() - 1, x.array().floor(), cells);
+  }
+  return cells;
+}
+
+}  // namespace flowskin::tracking

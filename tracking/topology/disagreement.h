@@ -1,0 +1,23 @@
+// Where a mesh and the sign of the field disagree. See docs/topology.md.
+#pragma once
+
+#include <vector>
+
+#include "tracking/advection/projection.h"
+#include "tracking/extraction/cell_set.h"
+#include "tracking/field/metaball_field.h"
+#include "tracking/mesh/surface_mesh.h"
+
+namespace flowskin::tracking {
+
+/// The cells of a grid in which the mesh says inside and the field outside, or the other way round, or in which the
+/// mesh lies over itself. Looked at are the nodes of the grid, and the places between two crossings of the mesh on one
+/// grid edge: so sheets closer to each other than a cell are seen, too. A place counts only where it is deeper than
+/// `depth` (m) by |f| / |grad f|: triangles cut corners of a curved surface.
+/// @param grid of the field
+/// @pre The mesh is closed.
+std::vector<CellSet::Cell> disagreeing_cells(const MetaballField& field, const SparseGrid& grid, double depth,
+                                             const std::vector<Vec3>& positions,
+                                             const std::vector<Triangle>& triangles);
+
+}  // namespace flowskin::tracking

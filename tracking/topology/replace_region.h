@@ -1,0 +1,52 @@
+// Replaces a region of a mesh by a fresh triangulation of the field's surface. See docs/topology.md.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tracking/extraction/cell_set.h"
+#include "tracking/field/metaball_field.h"
+#include "tracking/mesh/triangle_tree.h"
+
+namespace flowskin::tracking {
+
+/// A change of a mesh: some triangles go, others come. Vertices that no triangle uses any more go with them.
+struct MeshPatch {
+  std::vector<int> removed;         ///< Triangles, ascending.
+  std::vector<Vec3> born;           ///< New vertices, on the surface (m); numbered after those of the mesh.
+  std::vector<Vec3> born_normals;   ///< Outward.
+  std::vector<Triangle> triangles;  ///< New ones, of old and new vertices.
+};
+
+/// What is known of the field on a grid.
+struct FieldGrid {
+  const MetaballField& field;
+  const SparseGrid& grid;  ///< Its values; the spacing is the wanted edge length.
+};
+
+/// The box around a triangle, in grid coordinates.
+Box box_of(const SparseGrid& grid, const Triangle& triangle, const std::vector<Vec3>& positions);
+
+/// A mesh in which regions are being replaced.
+struct MeshToMend {
+  std::vector<Vec3> positions;  ///< m
+  std::vector<Vec3> normals;    ///< Of the field, outward; one a vertex.
+  std::vector<Triangle> triangles;
+  std::vector<Box> boxes;   ///< One a triangle.
+  std::vector<char> alive;  ///< One a triangle; 0: removed.
+};
+
+/// What is done to the triangles of marching cubes.
+enum class Finish { evened, raw };
+
+/// Cuts the triangles that meet `cells` out of a mesh, together with those whose absence would leave the border
+/// pinched; marching cubes fills the hole within the same cells, and the two are stitched along the border of the hole:
+/// its vertices are inserted into the fresh surface, its edges made there by flips, and what lies beyond them is cut
+/// off. New vertices are then evened out, if wanted. Vertices and triangles of the mesh outside the hole stay as they
+/// are, but for edges at the border of the hole, which may be flipped.
+/// @return nothing where the two surfaces do not fit together at the border; then more cells may help. `why` tells.
+std::optional<MeshPatch> replace_region(const FieldGrid& fresh, const CellSet& cells, const MeshToMend& mesh,
+                                        Finish finish, std::string& why);
+
+}  // namespace flowskin::tracking
