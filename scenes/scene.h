@@ -33,13 +33,16 @@ struct BoundarySpec {
   std::array<double, 3> color{0.55, 0.53, 0.50};  ///< Linear reflectance, 0 to 1.
 };
 
-/// Prescribed motion of the particles, by name, with the numbers it needs.
+/// Prescribed motion of the particles, by name, with the numbers it needs (docs/scenes.md gives the formulas).
 struct MotionSpec {
-  std::string type = "rotation";  ///< rotation, translation, shear, stretch, vortex (docs/scenes.md gives the formulas)
-  Vec3 center = Vec3::Zero();     ///< m: rotation, stretch
+  std::string type = "rotation";
+  Vec3 center = Vec3::Zero();            ///< m: rotation, stretch, necking, hole
+  Vec3 axis{1, 0, 0};                    ///< stretch, necking, hole; its length does not matter
   Vec3 angular_velocity = Vec3::Zero();  ///< rad/s: rotation
   Vec3 velocity = Vec3::Zero();          ///< m/s: translation (added to every motion)
-  double rate = 1;                       ///< 1/s: shear, stretch; m/s amplitude: vortex
+  double rate = 1;                       ///< 1/s: shear, stretch, necking; m/s amplitude: vortex, deformation
+  double length = 1;                     ///< m: necking (length of the neck), hole (its largest radius)
+  double period = 3;                     ///< s: hole, deformation; all is back where it was after it
 };
 
 struct RecordedSpec {
@@ -73,6 +76,8 @@ struct TrackingSpec {
   std::string fairing_springs = "constant";  ///< constant, variable
   bool confidence = false;                   ///< Write how well the field determines the velocity.
   bool remeshing = true;                     ///< Split, collapse and flip edges of a stretching surface.
+  double max_slip = 1;                       ///< Of the texture off its particles, in spacings; 0: any distance.
+  bool topology = true;
   bool guard = true;
 };
 
@@ -83,6 +88,8 @@ struct TextureSpec {
   Vec3 axis{0, 1, 0};               ///< planar: direction of projection; spherical: pole
   Vec3 rest_center = Vec3::Zero();  ///< Centre of the fluid at rest (m), which the mapping refers to.
   double rest_size = 0;  ///< Longest edge of its bounding box (m); 0: centre and size from the fluid at the start
+  std::string when_stretched = "leave";  ///< leave, fade, solid
+  double stretch_limit = 4;              ///< Factor of stretch or squeeze at which that sets in.
 };
 
 struct CameraSpec {

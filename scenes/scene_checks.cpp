@@ -60,6 +60,10 @@ void check_body(const Scene& scene, std::size_t i, Checker& checker) {
   } else if (body.shape == sph::FluidBody::Shape::ball) {
     checker.require(4.2 * std::pow(body.radius, 3) / cell <= max_particles, "bodies", i, "radius", too_many);
   }
+  for (std::size_t k = 0; k < body.cuts.size(); ++k) {
+    checker.require(is_ordered(body.cuts[k]), "bodies", i, "cuts",
+                    fmt::format("has an entry {} whose min is not smaller than its max along every axis", k));
+  }
   if (scene.particles.source == Source::prescribed) {
     const std::string message =
         "has no meaning with particles.source \"prescribed\": particles.motion gives the velocity";
@@ -78,6 +82,7 @@ void check_particles(const Scene& scene, Checker& checker) {
                     "is empty and there are no particles.positions: nothing moves; give one of the two");
     checker.require(!(has_bodies && has_positions), "particles.positions",
                     "and bodies are both given; give one of the two");
+    checker.require(!scene.particles.motion.axis.isZero(0), "particles.motion.axis", "is zero; expected a direction");
     checker.require(!(has_positions && scene.particles.jitter > 0), "particles.jitter",
                     "displaces the lattice of bodies; it has no meaning with particles.positions");
   }

@@ -34,28 +34,30 @@ Key<T> key(std::string path, Access access, Kind<V> kind, std::string unit, std:
   return key;
 }
 
-/// A list of objects with a table of their own.
-template <class T, class Item>
-Key<T> list(const std::string& path, std::vector<Item> T::*items, const Table<Item>& table, std::string meaning) {
+/// A list of objects with a table of their own; access(T&) is the vector of them.
+template <class T, class Access, class Item>
+Key<T> list(const std::string& path, Access access, const Table<Item>& table, std::string meaning) {
   Key<T> key;
   key.path = path;
   key.type = "list of objects";
   key.meaning = std::move(meaning);
-  key.read = [items, table](const JsonNode& node, T& object, const std::string& own_path, Problems& problems) {
+  key.read = [access, table](const JsonNode& node, T& object, const std::string& own_path, Problems& problems) {
     if (node.type != JsonNode::Type::list) throw Mismatch{describe(node), ""};
-    (object.*items).clear();
+    std::vector<Item>& items = access(object);
+    items.clear();
     for (std::size_t i = 0; i < node.children.size(); ++i) {
-      (object.*items).emplace_back();
-      read_object(node.children[i], table, fmt::format("{}[{}]", own_path, i), (object.*items).back(), problems);
+      items.emplace_back();
+      read_object(node.children[i], table, fmt::format("{}[{}]", own_path, i), items.back(), problems);
     }
   };
-  key.write = [items, table](const T& object, int indent) {
+  key.write = [access, table](const T& object, int indent) {
+    const std::vector<Item>& items = access(object);
     std::string text = "[";
-    for (const Item& item : object.*items) {
-      text += fmt::format("{}\n{:{}}{}", &item == &(object.*items).front() ? "" : ",", "", indent + 2,
+    for (const Item& item : items) {
+      text += fmt::format("{}\n{:{}}{}", &item == &items.front() ? "" : ",", "", indent + 2,
                           write_object(item, table, indent + 2));
     }
-    return text + ((object.*items).empty() ? "]" : fmt::format("\n{:{}}]", "", indent));
+    return text + (items.empty() ? "]" : fmt::format("\n{:{}}]", "", indent));
   };
   for (SceneKey inner : document(table)) {
     inner.path = path + "[]." + inner.path;
@@ -127,14 +129,26 @@ Table<Scene> particle_keys() {
           .only_for(for_prescribed, prescribed),
       key<S>("particles.motion.center", at(particles, &P::motion, &MotionSpec::center), vector(), "m",
              "Centre of the motion.")
-          .only_for("particles.motion.type \"rotation\" or \"stretch\"", moves_by({"rotation", "stretch"})),
+          .only_for("particles.motion.type \"rotation\", \"stretch\", \"necking\" or \"hole\"",
+                    moves_by({"rotation", "stretch", "necking", "hole"})),
+      key<S>("particles.motion.axis", at(particles, &P::motion, &MotionSpec::axis), vector(), "",
+             "Direction of the stretch, of the thread or of the hole; its length does not matter.")
+          .only_for("particles.motion.type \"stretch\", \"necking\" or \"hole\"",
+                    moves_by({"stretch", "necking", "hole"})),
       key<S>("particles.motion.angular_velocity", at(particles, &P::motion, &MotionSpec::angular_velocity), vector(1e4),
              "rad/s", "Axis times angular speed.")
           .only_for("particles.motion.type \"rotation\"", moves_by({"rotation"})),
       key<S>("particles.motion.rate", at(particles, &P::motion, &MotionSpec::rate), number(at_least(-1e4, 1e4)),
-             "1/s; vortex: m/s", "Rate of the shear or stretch; fastest speed of the vortex.")
-          .only_for("particles.motion.type \"shear\", \"stretch\" or \"vortex\"",
-                    moves_by({"shear", "stretch", "vortex"})),
+             "1/s; vortex, deformation: m/s",
+             "Rate of the shear, stretch or necking; speed of the vortex or deformation.")
+          .only_for("particles.motion.type \"shear\", \"stretch\", \"necking\", \"vortex\" or \"deformation\"",
+                    moves_by({"shear", "stretch", "necking", "vortex", "deformation"})),
+      key<S>("particles.motion.length", at(particles, &P::motion, &MotionSpec::length), number(above(0, 1e5)), "m",
+             "Length of the neck; largest radius of the hole.")
+          .only_for("particles.motion.type \"necking\" or \"hole\"", moves_by({"necking", "hole"})),
+      key<S>("particles.motion.period", at(particles, &P::motion, &MotionSpec::period), number(above(0, 1e5)), "s",
+             "Time after which everything is back where it was.")
+          .only_for("particles.motion.type \"hole\" or \"deformation\"", moves_by({"hole", "deformation"})),
       key<S>("particles.motion.velocity", at(particles, &P::motion, &MotionSpec::velocity), vector(1e4), "m/s",
              "Translation, which carries the whole motion along.")
           .only_for(for_prescribed, prescribed),
@@ -215,13 +229,13 @@ Table<Scene> object_keys() {
   using S = Scene;
   using Source = ParticlesSpec::Source;
   return {
-      list<S>("bodies", &S::bodies, body_table(), "Shapes filled with particles at the start.")
+      list<S>("bodies", at(&S::bodies), body_table(), "Shapes filled with particles at the start.")
           .only_for("particles.source \"simulation\" or \"prescribed\"",
                     [](const S& s) { return s.particles.source != Source::recorded; }),
-      list<S>("emitters", &S::emitters, emitter_table(), "Discs that pour fluid.")
+      list<S>("emitters", at(&S::emitters), emitter_table(), "Discs that pour fluid.")
           .only_for("particles.source \"simulation\"",
                     [](const S& s) { return s.particles.source == Source::simulation; }),
-      list<S>("boundaries", &S::boundaries, boundary_table(), "Walls: open or closed surfaces."),
+      list<S>("boundaries", at(&S::boundaries), boundary_table(), "Walls: open or closed surfaces."),
   };
 }
 
@@ -260,8 +274,12 @@ Table<Scene> tracking_keys(const SceneVocabulary& vocabulary) {
       key<S>("tracking.remeshing", at(tracking, &T::remeshing), boolean(), "",
              "Split, collapse and flip edges of a stretching surface; false: a mesh of constant triangles, as in the "
              "paper."),
+      key<S>("tracking.max_slip", at(tracking, &T::max_slip), number(at_least(0, 1000)), "spacings",
+             "How far the texture may slip off the particles' material; 0: any distance, to see what a method does."),
+      key<S>("tracking.topology", at(tracking, &T::topology), boolean(), "",
+             "Let the surface merge, split, open and close with the fluid: regions that no longer fit are replaced."),
       key<S>("tracking.guard", at(tracking, &T::guard), boolean(), "",
-             "Replace a mesh that no longer fits the particles by a fresh one."),
+             "As a last resort, where regions cannot be replaced, replace the whole surface by a fresh one."),
   };
 }
 
@@ -282,6 +300,10 @@ Table<Scene> texture_keys() {
              "Centre of the fluid at rest, which the mapping refers to; used where rest_size is not 0."),
       key<S>("texture.rest_size", at(texture, &T::rest_size), number(at_least(0, 1e5)), "m",
              "Longest edge of the box around the fluid at rest; 0: centre and size from the particles at the start."),
+      key<S>("texture.when_stretched", at(texture, &T::when_stretched), choice({"leave", "fade", "solid"}), "",
+             "Where the texture is stretched past the limit: leave it, fade to a newer texture, or to the solid one."),
+      key<S>("texture.stretch_limit", at(texture, &T::stretch_limit), number(above(1, 1000)), "",
+             "Factor of stretch or squeeze at which that sets in; at one and a half times that it is complete."),
   };
 }
 
@@ -329,6 +351,14 @@ Table<Scene> output_keys() {
   };
 }
 
+Table<sph::Box> box_table() {
+  using B = sph::Box;
+  return {
+      key<B>("min", at(&B::min), vector(), "m", "Lower corner.").is_required(),
+      key<B>("max", at(&B::max), vector(), "m", "Upper corner.").is_required(),
+  };
+}
+
 }  // namespace
 
 Table<BodySpec> body_table() {
@@ -356,6 +386,7 @@ Table<BodySpec> body_table() {
     table.push_back(std::move(key).only_for("shape \"mesh\"", mesh));
   }
   append<B>(table, {
+                       list<B>("cuts", at(body, &F::cuts), box_table(), "Boxes that stay empty: slots, hollows."),
                        key<B>("velocity", at(body, &F::velocity), vector(1e4), "m/s", "Initial velocity."),
                        key<B>("angular_velocity", at(body, &F::angular_velocity), vector(1e4), "rad/s",
                               "Initial spin about the body's centroid."),

@@ -1,6 +1,7 @@
 #include "sph/fluid_bodies.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -67,6 +68,12 @@ std::vector<Vec3> fill(const FluidBody& body, double spacing, const std::string&
   return fill_block(body, spacing, name);
 }
 
+bool is_cut_out(const FluidBody& body, const Vec3& p) {
+  return std::any_of(body.cuts.begin(), body.cuts.end(), [&](const Box& cut) {
+    return (p.array() >= cut.min.array()).all() && (p.array() <= cut.max.array()).all();
+  });
+}
+
 }  // namespace
 
 std::vector<FluidPoint> fill_bodies(const std::vector<FluidBody>& bodies, double spacing,
@@ -83,10 +90,11 @@ std::vector<FluidPoint> fill_bodies(const std::vector<FluidBody>& bodies, double
                           " m");
     }
     std::erase_if(positions, [&](const Vec3& p) {
-      return walls.has_near(p, wall_distance * spacing) || fluid.has_near(p, body_distance * spacing);
+      return is_cut_out(bodies[b], p) || walls.has_near(p, wall_distance * spacing) ||
+             fluid.has_near(p, body_distance * spacing);
     });
     if (positions.empty()) {
-      throw SettingsError(name + " has no particle left: it lies in other bodies or on a wall");
+      throw SettingsError(name + " has no particle left: it is cut out whole, or lies in other bodies or on a wall");
     }
     Vec3 centroid = Vec3::Zero();
     for (const Vec3& p : positions) centroid += p / static_cast<double>(positions.size());

@@ -13,8 +13,9 @@ struct FluidPoint {
 };
 
 /// Particles of all bodies, body after body. Each body is filled with a lattice of the spacing that starts half a
-/// spacing inside its bounding box, so a block n spacings wide is n particles wide. Left out are points nearer than 0.7
-/// spacings to a particle of an earlier body, and points nearer than half a spacing to a boundary particle.
+/// spacing inside its bounding box, so a block n spacings wide is n particles wide. Left out are points in the body's
+/// cuts, points nearer than 0.7 spacings to a particle of an earlier body, and points nearer than half a spacing to a
+/// boundary particle.
 /// @throws SettingsError where a body has an impossible size, an open mesh, or no particle left
 std::vector<FluidPoint> fill_bodies(const std::vector<FluidBody>& bodies, double spacing,
                                     const std::vector<Vec3>& boundary_positions);

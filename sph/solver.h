@@ -73,6 +73,7 @@ struct FluidBody {
   Vec3 center = Vec3::Zero();            ///< shape ball (m)
   double radius = 0;                     ///< shape ball (m)
   TriangleMesh mesh;                     ///< shape mesh: a closed surface (m)
+  std::vector<Box> cuts;                 ///< Boxes that are cut out of the shape (m), closed: their faces stay empty.
   Vec3 velocity = Vec3::Zero();          ///< Initial velocity (m/s).
   Vec3 angular_velocity = Vec3::Zero();  ///< Initial spin about the body's centroid (rad/s).
 };

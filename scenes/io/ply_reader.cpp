@@ -180,9 +180,16 @@ class PlyDataReader {
       const std::size_t length = take_list_length(cursor_, property);
       if (is_face && (property.name == "vertex_indices" || property.name == "vertex_index"))
         read_polygon(property, length);
+      else if (is_face)
+        read_face_list(property, length);
       else
         cursor_.skip(property.type, length);
     }
+  }
+
+  void read_face_list(const PlyProperty& property, std::size_t length) {
+    std::vector<double>& values = ply_.face_lists[property.name];
+    for (std::size_t k = 0; k < length; ++k) values.push_back(cursor_.next(property.type));
   }
 
   void read_polygon(const PlyProperty& property, std::size_t length) {

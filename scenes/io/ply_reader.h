@@ -18,6 +18,7 @@ struct PlyFile {
   std::size_t vertex_count = 0;
   std::map<std::string, std::vector<double>> vertex;  ///< each with vertex_count entries
   std::vector<std::array<int, 3>> triangles;
+  std::map<std::string, std::vector<double>> face_lists;  ///< other lists of the faces, each as one row of numbers
   std::vector<std::string> comments;
 };
 

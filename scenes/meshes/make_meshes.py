@@ -93,9 +93,72 @@ def cone(radius=0.2, height=0.25, around=48):
     mesh.write("cone.obj", "A blunt cone of radius 0.2 m and height 0.25 m on y = 0")
 
 
+def capsule(radius=0.07, half=0.32, around=32, rings=10):
+    """A closed rod along x with round ends; `half` is half the distance of the centres of its ends."""
+    mesh = Mesh()
+
+    def point(i, j):
+        """Ring i from the left pole to the right one, corner j."""
+        a = math.pi * (i if i <= rings else i - 1) / (2 * rings) - math.pi / 2
+        x, r = radius * math.sin(a) + (-half if i <= rings else half), radius * math.cos(a)
+        b = 2 * math.pi * j / around
+        return tuple(round(c, 6) + 0.0 for c in (x, r * math.cos(b), r * math.sin(b)))
+
+    last = 2 * rings + 1
+    for j in range(around):
+        mesh.face(point(0, 0), point(1, j + 1), point(1, j))
+        mesh.face(point(last, 0), point(last - 1, j), point(last - 1, j + 1))
+        for i in range(1, last - 1):
+            mesh.face(point(i, j), point(i, j + 1), point(i + 1, j + 1), point(i + 1, j))
+    mesh.write("capsule.obj", f"A closed rod with round ends along the x axis, radius {radius} m")
+
+
+def dish(radius=0.32, thin=0.045, thick=0.13, around=64, rings=16):
+    """A closed disc about the y axis, hollowed from both sides: `thin` in the middle, `thick` near its round rim."""
+    mesh, rim = Mesh(), thick / 2
+
+    def height(r):
+        flat = radius - rim
+        if r <= flat:
+            return (thin + (thick - thin) * (r / flat) ** 2) / 2
+        return math.sqrt(max(rim * rim - (r - flat) ** 2, 0.0))
+
+    def point(side, i, j):
+        # Rings close together on the rim, where the surface is steep.
+        r, a = radius * math.sin(0.5 * math.pi * i / rings), 2 * math.pi * j / around
+        y = 0.0 if i == rings else side * height(r)
+        return tuple(round(c, 6) + 0.0 for c in (r * math.cos(a), y, -r * math.sin(a)))
+
+    for j in range(around):
+        mesh.face(point(1, 0, 0), point(1, 1, j), point(1, 1, j + 1))
+        mesh.face(point(-1, 0, 0), point(-1, 1, j + 1), point(-1, 1, j))
+        for i in range(1, rings):
+            mesh.face(point(1, i, j), point(1, i + 1, j), point(1, i + 1, j + 1), point(1, i, j + 1))
+            mesh.face(point(-1, i, j), point(-1, i, j + 1), point(-1, i + 1, j + 1), point(-1, i + 1, j))
+    mesh.write("dish.obj", f"A closed disc of radius {radius} m, {thin} m thick in the middle and {thick} m near the rim")
+
+
+def bar(radius=0.09, half=0.24, sides=12):
+    """A closed horizontal bar along z, through the origin."""
+    mesh = Mesh()
+
+    def corner(k, z):
+        a = 2 * math.pi * (k + 0.5) / sides
+        return (round(radius * math.cos(a), 6), round(radius * math.sin(a), 6), z)
+
+    for k in range(sides):
+        mesh.face(corner(k, half), corner(k, -half), corner(k + 1, -half), corner(k + 1, half))
+        mesh.face((0.0, 0.0, half), corner(k, half), corner(k + 1, half))
+        mesh.face((0.0, 0.0, -half), corner(k + 1, -half), corner(k, -half))
+    mesh.write("bar.obj", f"A closed bar of radius {radius} m and length {2 * half} m along the z axis")
+
+
 if __name__ == "__main__":
     stairs()
     stairs_floor()
     box()
     torus()
     cone()
+    capsule()
+    bar()
+    dish()

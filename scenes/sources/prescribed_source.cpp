@@ -31,8 +31,8 @@ void PrescribedSource::advance_to(double time) {
   const Vec3 translation = time * motion_.spec().velocity;
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < state_.positions.size(); ++i) {
-    if (motion_.has_closed_form()) state_.positions[i] = motion_.steady_path(state_.rest_positions[i], time);
-    state_.velocities[i] = motion_.steady_velocity(state_.positions[i]) + motion_.spec().velocity;
+    if (motion_.has_closed_form()) state_.positions[i] = motion_.local_path(state_.rest_positions[i], time);
+    state_.velocities[i] = motion_.local_velocity(state_.positions[i], time) + motion_.spec().velocity;
     state_.positions[i] += translation;
   }
 }
@@ -43,17 +43,19 @@ void PrescribedSource::place_by_integration(double time) {
   const double rest = time - static_cast<double>(last_step) * step;
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < grid_positions_.size(); ++i) {
-    for (std::uint64_t k = grid_step_; k < last_step; ++k) grid_positions_[i] = integrated(grid_positions_[i], step);
-    state_.positions[i] = integrated(grid_positions_[i], rest);
+    for (std::uint64_t k = grid_step_; k < last_step; ++k)
+      grid_positions_[i] = integrated(grid_positions_[i], static_cast<double>(k) * step, step);
+    state_.positions[i] = integrated(grid_positions_[i], static_cast<double>(last_step) * step, rest);
   }
   grid_step_ = last_step;
 }
 
-Vec3 PrescribedSource::integrated(const Vec3& position, double step) const {
-  const Vec3 k1 = motion_.steady_velocity(position);
-  const Vec3 k2 = motion_.steady_velocity(position + 0.5 * step * k1);
-  const Vec3 k3 = motion_.steady_velocity(position + 0.5 * step * k2);
-  const Vec3 k4 = motion_.steady_velocity(position + step * k3);
+Vec3 PrescribedSource::integrated(const Vec3& position, double time, double step) const {
+  const double middle = time + 0.5 * step;
+  const Vec3 k1 = motion_.local_velocity(position, time);
+  const Vec3 k2 = motion_.local_velocity(position + 0.5 * step * k1, middle);
+  const Vec3 k3 = motion_.local_velocity(position + 0.5 * step * k2, middle);
+  const Vec3 k4 = motion_.local_velocity(position + step * k3, time + step);
   return position + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
 }
 

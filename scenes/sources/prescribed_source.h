@@ -7,8 +7,8 @@
 
 namespace flowskin::scenes {
 
-/// Positions come from closed forms; for the vortex, which has none, from RK4 with a fixed step, counted from time 0,
-/// so that they do not depend on the times asked for. Velocities are those of the analytic field.
+/// Positions come from closed forms; for motions that have none from RK4 with a fixed step, counted from time 0, so
+/// that they do not depend on the times asked for. Velocities are those of the analytic field.
 class PrescribedSource : public ParticleSource {
  public:
   /// @throws SceneError, sph::SettingsError where the scene gives no particles or an unknown motion.
@@ -22,7 +22,8 @@ class PrescribedSource : public ParticleSource {
  private:
   /// Positions in the moving frame at `time`, in state_.
   void place_by_integration(double time);
-  Vec3 integrated(const Vec3& position, double step) const;
+  /// One step of RK4 (s) from a place at a time, in the moving frame.
+  Vec3 integrated(const Vec3& position, double time, double step) const;
 
   Motion motion_;
   double spacing_;
