@@ -25,6 +25,10 @@ struct SurfaceFrame {
   std::vector<Color> colors;                     ///< of the rest position
   std::vector<Vec2f> vertex_uvs;                 ///< texture coordinates a vertex (no seams: see corner_uvs)
   std::vector<std::array<Vec2f, 3>> corner_uvs;  ///< texture coordinates a triangle corner
+  /// A second texture for stretched places, or the solid one where there are no second coordinates; all may be empty.
+  std::vector<float> texture_blend;               ///< its share a vertex, 0 to 1
+  std::vector<Vec2f> vertex_uvs2;                 ///< its coordinates a vertex
+  std::vector<std::array<Vec2f, 3>> corner_uvs2;  ///< its coordinates a triangle corner
   std::vector<Vec2f> confidence;  ///< how well the field determines the velocity: weak, strong direction; or empty
   std::string texture_file;       ///< image's name beside the written files, for PLY readers; may be empty
 };

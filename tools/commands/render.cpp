@@ -62,6 +62,7 @@ class Redraw {
     for (int frame : surface_frames_) {
       const auto mesh = read_surface_ply(directory_.surface(frame, ".ply"));
       SurfaceFrame surface = dress(mesh, frame / scene_.frame_rate, scene_.texture, rest_);
+      if (scene_.texture.when_stretched != "leave") read_surface_blend(directory_.surface(frame, ".ply"), surface);
       if (scene_.render.style == "confidence")
         surface.confidence = read_surface_confidence(directory_.surface(frame, ".ply"));
       pictures.draw(frame, surface);

@@ -34,7 +34,7 @@ class MaterialMotion {
 
  private:
   Vec3 moved(const Vec3& start, double time) const {
-    return motion_.steady_path(start, time) + time * motion_.spec().velocity;
+    return motion_.local_path(start, time) + time * motion_.spec().velocity;
   }
 
   scenes::Motion motion_;

@@ -54,6 +54,7 @@ class StairsRun {
     for (const std::string& method : methods()) {
       tracking::TrackerSettings settings = tracker_settings(scene_);
       settings.velocity = method;
+      settings.max_slip = 0;
       walkers_.push_back({method, tracking::Tracker(settings, to_particles(source_->state())), 0, {}, 0, {}});
     }
   }

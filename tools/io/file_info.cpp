@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <functional>
+#include <stdexcept>
 
 #include "scenes/io/obj_reader.h"
 #include "scenes/io/particle_file.h"
@@ -16,6 +17,7 @@
 #include "tools/frame_data.h"
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
+#include "tracking/mesh/self_intersections.h"
 
 namespace flowskin::tools {
 namespace {
@@ -50,10 +52,25 @@ Positions vertex_positions(const scenes::PlyFile& ply, const std::string& name) 
   return positions;
 }
 
+/// How many pairs of triangles intersect, and the first with its place; empty: none do.
+std::string intersection_line(const Positions& positions, const Triangles& triangles) {
+  const auto pairs = tracking::self_intersections(positions, triangles);
+  if (pairs.empty()) return {};
+  const auto& [a, b, c] = triangles[pairs[0][0]];
+  const Vec3 place = (positions[a] + positions[b] + positions[c]) / 3;
+  return fmt::format("{} pairs of triangles intersect, the first triangles {} and {} near ({:.6g}, {:.6g}, {:.6g}) m",
+                     pairs.size(), pairs[0][0], pairs[0][1], place.x(), place.y(), place.z());
+}
+
 void describe_surface(FileInfo& info, const Positions& positions, const Triangles& triangles) {
   info.lines.push_back(fmt::format("surface: {} vertices, {} triangles", positions.size(), triangles.size()));
   info.lines.push_back(bounds_line(positions));
-  const std::vector<std::string> problems = tracking::mesh_problems(positions, triangles);
+  std::vector<std::string> problems = tracking::mesh_problems(positions, triangles);
+  try {
+    if (const std::string line = intersection_line(positions, triangles); !line.empty()) problems.push_back(line);
+  } catch (const std::invalid_argument& error) {
+    if (problems.empty()) problems.push_back(std::string("intersections cannot be looked for: ") + error.what());
+  }
   info.sound = problems.empty();
   info.lines.push_back(fmt::format("area: {:.6g} m^2", tracking::mesh_area(positions, triangles)));
   if (info.sound) {
@@ -64,7 +81,7 @@ void describe_surface(FileInfo& info, const Positions& positions, const Triangle
     const tracking::MeshQuality quality = tracking::mesh_quality(positions, triangles);
     info.lines.push_back(fmt::format("edges: {:.4g} to {:.4g} m, mean {:.4g} m", quality.shortest_edge,
                                      quality.longest_edge, quality.mean_edge));
-    info.lines.emplace_back("sound: closed, two-manifold, outward, no unreferenced vertex");
+    info.lines.emplace_back("sound: closed, two-manifold, outward, no unreferenced vertex, no self-intersection");
   } else {
     info.lines.emplace_back("not a sound closed surface:");
     for (const std::string& problem : problems) info.lines.push_back("  " + problem);

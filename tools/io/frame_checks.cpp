@@ -39,6 +39,28 @@ class FrameChecker {
   std::size_t count_;
 };
 
+void check_corners(const std::vector<std::array<Vec2f, 3>>& uvs, std::size_t triangle_count, const std::string& what,
+                   const FrameChecker& checker) {
+  if (uvs.size() != triangle_count)
+    checker.fail("there are " + std::to_string(triangle_count) + " triangles but " + what + " for " +
+                 std::to_string(uvs.size()));
+  for (std::size_t i = 0; i < uvs.size(); ++i)
+    for (const Vec2f& uv : uvs[i])
+      if (!uv.allFinite())
+        checker.fail("the " + what + " of triangle " + std::to_string(i) + " are not finite numbers");
+}
+
+/// What fades one texture into another: all of it, or only the weights, or nothing.
+void check_blend(const SurfaceFrame& frame, const FrameChecker& checker) {
+  if (!frame.texture_blend.empty()) checker.length(frame.texture_blend, "texture blend weights");
+  for (const float weight : frame.texture_blend)
+    if (!(weight >= 0 && weight <= 1)) checker.fail("a texture blend weight is not between 0 and 1");
+  if (frame.corner_uvs2.empty() && frame.vertex_uvs2.empty()) return;
+  if (frame.texture_blend.empty()) checker.length(frame.texture_blend, "texture blend weights");
+  checker.finite(frame.vertex_uvs2, "second texture coordinates");
+  check_corners(frame.corner_uvs2, frame.mesh.triangles.size(), "second texture coordinates", checker);
+}
+
 }  // namespace
 
 void check_frame(const SurfaceFrame& frame, const std::filesystem::path& file) {
@@ -50,20 +72,16 @@ void check_frame(const SurfaceFrame& frame, const std::filesystem::path& file) {
   checker.finite(frame.normals, "normals");
   checker.finite(frame.vertex_uvs, "texture coordinates");
   if (!frame.confidence.empty()) checker.finite(frame.confidence, "confidences");
+  check_blend(frame, checker);
   checker.length(mesh.ids, "ids");
   checker.length(frame.colors, "colours");
-  if (frame.corner_uvs.size() != mesh.triangles.size())
-    checker.fail("there are " + std::to_string(mesh.triangles.size()) + " triangles but texture coordinates for " +
-                 std::to_string(frame.corner_uvs.size()));
+  check_corners(frame.corner_uvs, mesh.triangles.size(), "texture coordinates", checker);
   const auto vertex_count = static_cast<int>(mesh.positions.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      if (mesh.triangles[i][k] < 0 || mesh.triangles[i][k] >= vertex_count)
-        checker.fail("triangle " + std::to_string(i) + " refers to vertex " + std::to_string(mesh.triangles[i][k]) +
-                     " of " + std::to_string(vertex_count));
-      if (!frame.corner_uvs[i][k].allFinite())
-        checker.fail("the texture coordinates of triangle " + std::to_string(i) + " are not finite numbers");
-    }
+    for (const int vertex : mesh.triangles[i])
+      if (vertex < 0 || vertex >= vertex_count)
+        checker.fail("triangle " + std::to_string(i) + " refers to vertex " + std::to_string(vertex) + " of " +
+                     std::to_string(vertex_count));
 }
 
 void check_frame(const ParticleFrame& frame, const std::filesystem::path& file) {

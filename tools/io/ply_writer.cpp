@@ -82,6 +82,19 @@ void add_vertices(ByteBuffer& ply, const SurfaceFrame& frame, const IdColumn& id
       ply.f32(frame.confidence[i].x());
       ply.f32(frame.confidence[i].y());
     }
+    for (int repeat = 0; repeat < 2 && !frame.vertex_uvs2.empty(); ++repeat) {
+      ply.f32(frame.vertex_uvs2[i].x());
+      ply.f32(frame.vertex_uvs2[i].y());
+    }
+    if (!frame.texture_blend.empty()) ply.f32(frame.texture_blend[i]);
+  }
+}
+
+void add_corners(ByteBuffer& ply, const std::array<Vec2f, 3>& uvs) {
+  ply.byte(6);
+  for (const Vec2f& uv : uvs) {
+    ply.f32(uv.x());
+    ply.f32(uv.y());
   }
 }
 
@@ -89,11 +102,8 @@ void add_faces(ByteBuffer& ply, const SurfaceFrame& frame) {
   for (std::size_t i = 0; i < frame.mesh.triangles.size(); ++i) {
     ply.byte(3);
     for (const int vertex : frame.mesh.triangles[i]) ply.i32(vertex);
-    ply.byte(6);
-    for (const Vec2f& uv : frame.corner_uvs[i]) {
-      ply.f32(uv.x());
-      ply.f32(uv.y());
-    }
+    add_corners(ply, frame.corner_uvs[i]);
+    if (!frame.corner_uvs2.empty()) add_corners(ply, frame.corner_uvs2[i]);
   }
 }
 
@@ -112,6 +122,22 @@ std::vector<Vec2f> read_confidence(const scenes::PlyFile& ply) {
   std::vector<Vec2f> result(ply.vertex_count);
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = {float(weak->second[i]), float(strong->second[i])};
   return result;
+}
+
+/// Coordinates of the triangles' corners. @throws InputError where there are not six finite numbers a triangle.
+std::vector<std::array<Vec2f, 3>> read_corners(const scenes::PlyFile& ply, const std::string& list,
+                                               const std::string& file) {
+  const auto found = ply.face_lists.find(list);
+  if (found == ply.face_lists.end() || found->second.size() != 6 * ply.triangles.size())
+    throw InputError(file + ": no list \"" + list + "\" of six numbers a triangle: a surface written by FlowSkin was " +
+                     "expected");
+  std::vector<std::array<Vec2f, 3>> corners(ply.triangles.size());
+  for (std::size_t i = 0; i < found->second.size(); ++i) {
+    corners[i / 6][i % 6 / 2][i % 2] = static_cast<float>(found->second[i]);
+    if (!std::isfinite(found->second[i]))
+      throw InputError(file + ", triangle " + std::to_string(i / 6) + ": \"" + list + "\" is not a finite number");
+  }
+  return corners;
 }
 
 /// Three float columns as vectors. @throws InputError where one is missing or holds no finite number.
@@ -165,8 +191,12 @@ void write_surface_ply(const std::filesystem::path& file, const SurfaceFrame& fr
   add_properties(ply, "float", {"vx", "vy", "vz", "rest_x", "rest_y", "rest_z"});
   ply.text(id_column.property());
   if (!frame.confidence.empty()) add_properties(ply, "float", {"confidence", "confidence_strong"});
+  if (!frame.vertex_uvs2.empty()) add_properties(ply, "float", {"s2", "t2", "texture_u2", "texture_v2"});
+  if (!frame.texture_blend.empty()) add_properties(ply, "float", {"texture_blend"});
   add_element(ply, "face", frame.mesh.triangles.size());
-  ply.text("property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n");
+  ply.text("property list uchar int vertex_indices\nproperty list uchar float texcoord\n");
+  if (!frame.corner_uvs2.empty()) ply.text("property list uchar float texcoord2\n");
+  ply.text("end_header\n");
   add_vertices(ply, frame, id_column);
   add_faces(ply, frame);
   write_file(file, ply.view());
@@ -200,6 +230,18 @@ void write_particles_ply(const std::filesystem::path& file, const ParticleFrame&
 
 std::vector<Vec2f> read_surface_confidence(const std::filesystem::path& file) {
   return read_confidence(read_columns(file));
+}
+
+void read_surface_blend(const std::filesystem::path& file, SurfaceFrame& frame) {
+  const scenes::PlyFile ply = read_columns(file);
+  const auto blend = ply.vertex.find("texture_blend");
+  if (blend == ply.vertex.end()) return;
+  frame.texture_blend.assign(blend->second.begin(), blend->second.end());
+  for (const float weight : frame.texture_blend)
+    if (!(weight >= 0 && weight <= 1)) throw InputError(file.string() + ": a \"texture_blend\" is not between 0 and 1");
+  if (!ply.face_lists.contains("texcoord2")) return;
+  frame.corner_uvs = read_corners(ply, "texcoord", file.string());
+  frame.corner_uvs2 = read_corners(ply, "texcoord2", file.string());
 }
 
 tracking::SurfaceMesh read_surface_ply(const std::filesystem::path& file) {

@@ -126,6 +126,11 @@ void write_surface_vtp(const std::filesystem::path& file, const SurfaceFrame& fr
   arrays.vectors(xml, "rest_position", mesh.rest_positions);
   arrays.ids(xml, mesh.ids);
   if (!frame.confidence.empty()) arrays.pairs(xml, "confidence", frame.confidence);
+  if (!frame.vertex_uvs2.empty()) arrays.pairs(xml, "TCoords2", frame.vertex_uvs2);
+  if (!frame.texture_blend.empty()) {
+    ByteBuffer& weights = arrays.begin(xml, "texture_blend", "Float32", 1, frame.texture_blend.size(), 4);
+    for (const float weight : frame.texture_blend) weights.f32(weight);
+  }
   xml.text("      </PointData>\n      <Points>\n");
   arrays.vectors(xml, "Points", mesh.positions);
   xml.text("      </Points>\n      <Polys>\n");

@@ -20,14 +20,14 @@ class FrameStatistics {
   FrameRow finish_frame(int frame, const scenes::ParticleSource& source, const tracking::Tracker* tracker,
                         const SurfaceFrame* surface);
 
-  /// Why the guard replaced the mesh last.
+  /// Why the whole mesh was replaced last.
   const std::string& last_reason() const { return last_reason_; }
   int frames_reextracted() const { return frames_reextracted_; }
 
  private:
   int substeps_ = 0, reextractions_ = 0, frames_reextracted_ = 0;
-  int splits_ = 0, collapses_ = 0, flips_ = 0;
-  double seconds_guard_ = 0;
+  int splits_ = 0, collapses_ = 0, flips_ = 0, regions_ = 0;
+  double seconds_topology_ = 0;
   std::string last_reason_;
   std::vector<std::uint64_t> previous_ids_;  // ascending
 };

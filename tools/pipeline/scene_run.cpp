@@ -26,6 +26,8 @@
 #include "tools/report/progress.h"
 #include "tools/report/run_log.h"
 #include "tools/report/stage_clock.h"
+#include "tools/report/worst_frames.h"
+#include "tools/textures/texture_generations.h"
 #include "tools/textures/texture_mapping.h"
 
 namespace flowskin::tools {
@@ -106,6 +108,7 @@ class SceneRun {
   RestFrame rest_;
   Image texture_;
   std::unique_ptr<tracking::Tracker> tracker_;
+  std::unique_ptr<TextureGenerations> generations_;
   std::unique_ptr<FrameWriter> writer_;
   std::unique_ptr<PictureMaker> pictures_;
   std::unique_ptr<Comparison> comparison_;
@@ -141,6 +144,7 @@ SceneRun::SceneRun(const RunOptions& options, scenes::Scene scene, const RunDire
     tracker_ = clock_.time(
         "tracking", [&] { return std::make_unique<tracking::Tracker>(tracker_settings(scene_), to_particles(start)); });
   }
+  generations_ = std::make_unique<TextureGenerations>(scene_.texture, rest_);
   writer_ = std::make_unique<FrameWriter>(directory_, scene_.output, texture_);
   if (scene_.render.enabled)
     pictures_ = std::make_unique<PictureMaker>(directory_, scene_, texture_, bounds(start.positions));
@@ -175,7 +179,8 @@ void SceneRun::advance(int frame) {
     const double time = (frame - 1 + double(step) / steps) / scene_.frame_rate;
     clock_.time("source", [&] { source_->advance_to(time); });
     if (!tracker_) continue;
-    const tracking::Particles particles = to_particles(source_->state());
+    tracking::Particles particles = to_particles(source_->state());
+    generations_->carry(particles);
     const double tracked_before = clock_.seconds("tracking");
     clock_.time("tracking", [&] { tracker_->advance(particles); });
     statistics_.add(tracker_->report());
@@ -205,7 +210,8 @@ void SceneRun::record(int frame) {
   const ParticleFrame particles = dress(state, source_->spacing(), rest_);
   std::unique_ptr<SurfaceFrame> surface;
   if (tracker_) {
-    surface = std::make_unique<SurfaceFrame>(dress(tracker_->mesh(), time, scene_.texture, rest_));
+    generations_->update(*tracker_, to_particles(source_->state()), frame == 0 ? 0 : 1 / scene_.frame_rate);
+    surface = std::make_unique<SurfaceFrame>(generations_->dress(tracker_->mesh(), time));
     surface->texture_file = FrameWriter::kTextureFile;
     if (scene_.tracking.confidence || scene_.render.style == "confidence")
       surface->confidence = confidence_attribute(*tracker_);
@@ -227,6 +233,7 @@ void SceneRun::record(int frame) {
 void SceneRun::write_row(int frame, std::size_t particles, const SurfaceFrame* surface) {
   FrameRow row =
       clock_.time("statistics", [&] { return statistics_.finish_frame(frame, *source_, tracker_.get(), surface); });
+  row.overstretched = generations_->overstretched();
   row.particles = particles;  // of blended states those that are written
   const auto since_last_row = [&](const char* stage) {
     const double total = clock_.seconds(stage);
@@ -236,6 +243,7 @@ void SceneRun::write_row(int frame, std::size_t particles, const SurfaceFrame* s
   row.seconds_tracking = since_last_row("tracking");
   row.seconds_writing = since_last_row("writing");
   row.seconds_pictures = since_last_row("pictures");
+  row.seconds_statistics = since_last_row("statistics");
   rows_.push_back(row);
   write_frames_csv(directory_.frames_csv(), rows_);
   if (row.reextractions > 0)
@@ -285,6 +293,8 @@ void SceneRun::finish(double started) {
   if (tracker_)
     log_.info(fmt::format("the guard extracted the surface anew in {} of {} frames", statistics_.frames_reextracted(),
                           scene_.frames));
+  if (tracker_)
+    if (const std::string line = worst_frames(rows_, tracker_->settings().edge_length); !line.empty()) log_.info(line);
   const auto& last = rows_.back();
   log_.info(fmt::format("particles that left the domain: {}; paths stopped at a wall: {}", last.left_domain,
                         last.wall_crossings));

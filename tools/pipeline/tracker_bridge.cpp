@@ -36,6 +36,8 @@ tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
   settings.fairing_stiffness = spec.fairing_stiffness;
   settings.variable_springs = spec.fairing_springs == "variable";
   settings.remeshing = spec.remeshing;
+  settings.max_slip = spec.max_slip * scene.particles.spacing;
+  settings.topology = spec.topology;
   settings.guard = spec.guard;
   return settings;
 }

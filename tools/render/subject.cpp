@@ -41,6 +41,12 @@ void check_surface(const SurfaceFrame& frame, Style style) {
   }
   if (style == Style::textured) {
     require_length("corner texture coordinates", frame.corner_uvs.size(), triangles, "triangles");
+    if (!frame.texture_blend.empty()) {
+      require_length("texture blend weights", frame.texture_blend.size(), vertices, "vertices");
+      if (frame.corner_uvs2.empty()) require_length("colours", frame.colors.size(), vertices, "vertices");
+    }
+    if (!frame.corner_uvs2.empty())
+      require_length("second corner texture coordinates", frame.corner_uvs2.size(), triangles, "triangles");
   }
   for (std::size_t t = 0; t < triangles; ++t) {
     for (const int corner : frame.mesh.triangles[t]) {
@@ -83,25 +89,45 @@ SurfaceSubject::SurfaceSubject(const TraceDevice& device, const SurfaceFrame& fr
   scene_.commit();
 }
 
+Vec3f SurfaceSubject::image_color(const RayHit& hit, const std::array<Vec2f, 3>& uvs, float footprint) const {
+  const auto& triangle = frame_.mesh.triangles[hit.primitive];
+  const Vec2f uv = (1 - hit.u - hit.v) * uvs[0] + hit.u * uvs[1] + hit.v * uvs[2];
+  const Vec2f e1 = uvs[1] - uvs[0], e2 = uvs[2] - uvs[0];
+  const Vec3f& a = positions_[std::size_t(triangle[0])];
+  const float area = (positions_[std::size_t(triangle[1])] - a).cross(positions_[std::size_t(triangle[2])] - a).norm();
+  const float texture_area = std::abs(e1.x() * e2.y() - e1.y() * e2.x());
+  const float density = area > 0 ? texture_area / area : 0;  // squares of the texture per m^2
+  return texture_.sample(uv, footprint * density * texture_.texels());
+}
+
+Vec3f SurfaceSubject::solid_color(const RayHit& hit) const {
+  const auto& triangle = frame_.mesh.triangles[hit.primitive];
+  return (1 - hit.u - hit.v) * to_linear(frame_.colors[std::size_t(triangle[0])]) +
+         hit.u * to_linear(frame_.colors[std::size_t(triangle[1])]) +
+         hit.v * to_linear(frame_.colors[std::size_t(triangle[2])]);
+}
+
+Vec3f SurfaceSubject::textured_color(const RayHit& hit, float footprint) const {
+  const Vec3f image = image_color(hit, frame_.corner_uvs[hit.primitive], footprint);
+  if (frame_.texture_blend.empty()) return image;
+  const auto& triangle = frame_.mesh.triangles[hit.primitive];
+  const float share = (1 - hit.u - hit.v) * frame_.texture_blend[std::size_t(triangle[0])] +
+                      hit.u * frame_.texture_blend[std::size_t(triangle[1])] +
+                      hit.v * frame_.texture_blend[std::size_t(triangle[2])];
+  if (share <= 0) return image;
+  const Vec3f other =
+      frame_.corner_uvs2.empty() ? solid_color(hit) : image_color(hit, frame_.corner_uvs2[hit.primitive], footprint);
+  return (1 - share) * image + share * other;
+}
+
 Vec3f SurfaceSubject::styled_color(const RayHit& hit, const Vec3f& normal, float footprint) const {
   const auto& triangle = frame_.mesh.triangles[hit.primitive];
   const float w = 1 - hit.u - hit.v;
   switch (style_) {
-    case Style::textured: {
-      const auto& uvs = frame_.corner_uvs[hit.primitive];
-      const Vec2f uv = w * uvs[0] + hit.u * uvs[1] + hit.v * uvs[2];
-      const Vec2f e1 = uvs[1] - uvs[0], e2 = uvs[2] - uvs[0];
-      const Vec3f& a = positions_[std::size_t(triangle[0])];
-      const float area =
-          (positions_[std::size_t(triangle[1])] - a).cross(positions_[std::size_t(triangle[2])] - a).norm();
-      const float texture_area = std::abs(e1.x() * e2.y() - e1.y() * e2.x());
-      const float density = area > 0 ? texture_area / area : 0;  // squares of the texture per m^2
-      return texture_.sample(uv, footprint * density * texture_.texels());
-    }
+    case Style::textured:
+      return textured_color(hit, footprint);
     case Style::solid:
-      return w * to_linear(frame_.colors[std::size_t(triangle[0])]) +
-             hit.u * to_linear(frame_.colors[std::size_t(triangle[1])]) +
-             hit.v * to_linear(frame_.colors[std::size_t(triangle[2])]);
+      return solid_color(hit);
     case Style::confidence:
       return heat(w * frame_.confidence[std::size_t(triangle[0])].x() +
                   hit.u * frame_.confidence[std::size_t(triangle[1])].x() +

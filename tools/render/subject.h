@@ -12,7 +12,7 @@ namespace flowskin::tools {
 
 /// What a surface frame's colour shows.
 enum class Style {
-  textured,    ///< The texture, by corner_uvs.
+  textured,    ///< The texture, by corner_uvs; by texture_blend faded to corner_uvs2, or to frame.colors.
   solid,       ///< frame.colors, smoothly between the vertices.
   normals,     ///< Red, green, blue = (1 + normal) / 2, sRGB-coded, neither lit nor developed: to be read off.
   confidence,  ///< frame.confidence of the weaker direction: dark blue 0, green, yellow 1.
@@ -54,6 +54,9 @@ class SurfaceSubject final : public Subject {
 
  private:
   Vec3f styled_color(const RayHit& hit, const Vec3f& normal, float footprint) const;
+  Vec3f textured_color(const RayHit& hit, float footprint) const;
+  Vec3f image_color(const RayHit& hit, const std::array<Vec2f, 3>& uvs, float footprint) const;
+  Vec3f solid_color(const RayHit& hit) const;
 
   const SurfaceFrame& frame_;
   const MipMap& texture_;

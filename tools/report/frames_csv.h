@@ -13,23 +13,32 @@ struct FrameRow {
   double time = 0;  ///< s
   std::uint64_t particles = 0;
   std::uint64_t vertices = 0, triangles = 0;
-  int components = 0, euler = 0;
+  int components = 0, euler = 0;                            ///< of the tracked surface
+  int expected_components = 0, expected_euler = 0;          ///< of a fresh extraction
+  int small_components = 0, expected_small_components = 0;  ///< of these, those below the cube of the edge length
+  int same_topology = 1;  ///< 1: components and Euler characteristic as expected, small components left out
   double volume = 0, expected_volume = 0;           ///< m^3: of the tracked surface, of a fresh extraction
+  double hausdorff = 0;                             ///< m: between the tracked surface and a fresh extraction
+  std::uint64_t self_intersections = 0;             ///< pairs of triangles
   double area = 0;                                  ///< m^2
   double kinetic_energy = 0, potential_energy = 0;  ///< J
   double max_distance = 0;                          ///< largest |f|/|grad f| at a vertex (m)
   double smallest_angle = 0;                        ///< degrees
+  double good_angles = 0, good_edges = 0;           ///< shares: above 10 degrees; 0.5 to 1.5 of the edge length
   double stretch_median = 0, stretch_p99 = 0;       ///< larger singular value of the map from rest to present
+  double overstretched = 0;  ///< share of the area whose texture, as shown, is stretched past the limit
   double texture_drift = 0;  ///< m: median distance between the rest positions of surface and particles beneath
   int substeps = 0;
   int splits = 0, collapses = 0, flips = 0;  ///< of the remeshing
+  int regions = 0;                           ///< of the surface, replaced where it no longer fitted
   int reextractions = 0;                     ///< how often the guard replaced the mesh in this frame
   int kept_ids = 0;                          ///< vertices that were there in the frame before
   std::uint64_t steps = 0;                   ///< solver steps since the start
   double time_step = 0;                      ///< s, the last one
   double mean_density_error = 0, max_density_error = 0;
   std::uint64_t left_domain = 0, wall_crossings = 0;  ///< since the start
-  double seconds_source = 0, seconds_tracking = 0, seconds_guard = 0, seconds_writing = 0, seconds_pictures = 0;
+  double seconds_source = 0, seconds_tracking = 0, seconds_topology = 0, seconds_writing = 0, seconds_pictures = 0,
+         seconds_statistics = 0;
 };
 
 /// Writes all rows, whole or not at all. @throws RunError

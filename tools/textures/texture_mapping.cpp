@@ -51,14 +51,13 @@ Chart box_chart(const Vec3& normal) {
 }
 
 /// Normals at rest of each triangle (length twice its area); the present ones where the rest triangle has no area.
-std::vector<Vec3> rest_normals(const tracking::SurfaceMesh& mesh) {
+std::vector<Vec3> rest_normals(const tracking::SurfaceMesh& mesh, const std::vector<Vec3>& places) {
   std::vector<Vec3> normals;
   normals.reserve(mesh.triangles.size());
   for (const tracking::Triangle& t : mesh.triangles) {
-    const Vec3 normal = tracking::doubled_area_vector(mesh.rest_positions, t);
+    const Vec3 normal = tracking::doubled_area_vector(places, t);
     double longest = 0;
-    for (int k = 0; k < 3; ++k)
-      longest = std::max(longest, (mesh.rest_positions[t[k]] - mesh.rest_positions[t[(k + 1) % 3]]).squaredNorm());
+    for (int k = 0; k < 3; ++k) longest = std::max(longest, (places[t[k]] - places[t[(k + 1) % 3]]).squaredNorm());
     normals.push_back(normal.norm() > 1e-9 * longest ? normal : tracking::doubled_area_vector(mesh.positions, t));
   }
   return normals;
@@ -103,24 +102,24 @@ class SphericalMap {
 };
 
 /// Corners beyond the seam continue u past the end; a corner at a pole takes the middle longitude of the other two.
-std::array<Vec2f, 3> spherical_corners(const tracking::SurfaceMesh& mesh, const tracking::Triangle& t,
+std::array<Vec2f, 3> spherical_corners(const std::vector<Vec3>& places, const tracking::Triangle& t,
                                        const SphericalMap& map) {
   std::array<Vec2d, 3> uv;
   double largest = -map.tiles_round();
   for (int k = 0; k < 3; ++k) {
-    uv[k] = map.uv(mesh.rest_positions[t[k]]);
-    if (!map.at_pole(mesh.rest_positions[t[k]])) largest = std::max(largest, uv[k].x());
+    uv[k] = map.uv(places[t[k]]);
+    if (!map.at_pole(places[t[k]])) largest = std::max(largest, uv[k].x());
   }
   double sum = 0;
   int others = 0;
   for (int k = 0; k < 3; ++k) {
-    if (map.at_pole(mesh.rest_positions[t[k]])) continue;
+    if (map.at_pole(places[t[k]])) continue;
     if (uv[k].x() < largest - map.tiles_round() / 2) uv[k].x() += map.tiles_round();
     sum += uv[k].x();
     ++others;
   }
   for (int k = 0; k < 3; ++k)
-    if (others > 0 && map.at_pole(mesh.rest_positions[t[k]])) uv[k].x() = sum / others;
+    if (others > 0 && map.at_pole(places[t[k]])) uv[k].x() = sum / others;
   return {uv[0].cast<float>(), uv[1].cast<float>(), uv[2].cast<float>()};
 }
 
@@ -144,27 +143,26 @@ RestFrame rest_frame(const std::vector<Vec3>& rest_positions) {
   return rest;
 }
 
-std::vector<std::array<Vec2f, 3>> corner_uvs(const tracking::SurfaceMesh& mesh, const scenes::TextureSpec& texture,
-                                             const RestFrame& rest) {
+std::vector<std::array<Vec2f, 3>> corner_uvs(const tracking::SurfaceMesh& mesh, const std::vector<Vec3>& places,
+                                             const scenes::TextureSpec& texture, const RestFrame& rest) {
   std::vector<std::array<Vec2f, 3>> uvs;
   uvs.reserve(mesh.triangles.size());
   if (texture.mapping == "spherical") {
     const SphericalMap map(texture, rest);
-    for (const tracking::Triangle& t : mesh.triangles) uvs.push_back(spherical_corners(mesh, t, map));
+    for (const tracking::Triangle& t : mesh.triangles) uvs.push_back(spherical_corners(places, t, map));
     return uvs;
   }
   const double tile = tile_size(texture, rest);
   const auto projected = [&](const tracking::Triangle& t, const Chart& chart) -> std::array<Vec2f, 3> {
-    return {project(mesh.rest_positions[t[0]], chart, rest, tile),
-            project(mesh.rest_positions[t[1]], chart, rest, tile),
-            project(mesh.rest_positions[t[2]], chart, rest, tile)};
+    return {project(places[t[0]], chart, rest, tile), project(places[t[1]], chart, rest, tile),
+            project(places[t[2]], chart, rest, tile)};
   };
   if (texture.mapping == "planar") {
     const Chart chart = chart_seen_from(unit_axis(texture));
     for (const tracking::Triangle& t : mesh.triangles) uvs.push_back(projected(t, chart));
     return uvs;
   }
-  const std::vector<Vec3> normals = rest_normals(mesh);
+  const std::vector<Vec3> normals = rest_normals(mesh, places);
   const std::vector<Vec3> around = vertex_rest_normals(mesh, normals);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     // The neighbours have a say, lest single triangles fall out of their chart where the surface is rough.
@@ -175,25 +173,34 @@ std::vector<std::array<Vec2f, 3>> corner_uvs(const tracking::SurfaceMesh& mesh, 
   return uvs;
 }
 
-std::vector<Vec2f> vertex_uvs(const tracking::SurfaceMesh& mesh, const scenes::TextureSpec& texture,
-                              const RestFrame& rest) {
+std::vector<Vec2f> vertex_uvs(const tracking::SurfaceMesh& mesh, const std::vector<Vec3>& places,
+                              const scenes::TextureSpec& texture, const RestFrame& rest) {
   std::vector<Vec2f> uvs;
   uvs.reserve(mesh.positions.size());
   if (texture.mapping == "spherical") {
     const SphericalMap map(texture, rest);
-    for (const Vec3& x : mesh.rest_positions) uvs.push_back(map.uv(x).cast<float>());
+    for (const Vec3& x : places) uvs.push_back(map.uv(x).cast<float>());
     return uvs;
   }
   const double tile = tile_size(texture, rest);
   if (texture.mapping == "planar") {
     const Chart chart = chart_seen_from(unit_axis(texture));
-    for (const Vec3& x : mesh.rest_positions) uvs.push_back(project(x, chart, rest, tile));
+    for (const Vec3& x : places) uvs.push_back(project(x, chart, rest, tile));
     return uvs;
   }
-  const std::vector<Vec3> around = vertex_rest_normals(mesh, rest_normals(mesh));
-  for (std::size_t i = 0; i < mesh.rest_positions.size(); ++i)
-    uvs.push_back(project(mesh.rest_positions[i], box_chart(around[i]), rest, tile));
+  const std::vector<Vec3> around = vertex_rest_normals(mesh, rest_normals(mesh, places));
+  for (std::size_t i = 0; i < places.size(); ++i) uvs.push_back(project(places[i], box_chart(around[i]), rest, tile));
   return uvs;
+}
+
+std::vector<std::array<Vec2f, 3>> corner_uvs(const tracking::SurfaceMesh& mesh, const scenes::TextureSpec& texture,
+                                             const RestFrame& rest) {
+  return corner_uvs(mesh, mesh.rest_positions, texture, rest);
+}
+
+std::vector<Vec2f> vertex_uvs(const tracking::SurfaceMesh& mesh, const scenes::TextureSpec& texture,
+                              const RestFrame& rest) {
+  return vertex_uvs(mesh, mesh.rest_positions, texture, rest);
 }
 
 Color rest_color(const Vec3& rest_position, const RestFrame& rest) {

@@ -17,9 +17,15 @@ RestFrame rest_frame(const std::vector<Vec3>& rest_positions);
 
 /// Texture coordinates a triangle corner. box: the axis that the triangle faces at rest; spherical: the seam is closed
 /// by continuing u past 1 on the triangles that cross it.
+/// @param places of the vertices' material (m) that count as at rest
+std::vector<std::array<Vec2f, 3>> corner_uvs(const tracking::SurfaceMesh& mesh, const std::vector<Vec3>& places,
+                                             const scenes::TextureSpec& texture, const RestFrame& rest);
+/// One pair of coordinates a vertex, for formats that have no more.
+std::vector<Vec2f> vertex_uvs(const tracking::SurfaceMesh& mesh, const std::vector<Vec3>& places,
+                              const scenes::TextureSpec& texture, const RestFrame& rest);
+/// The same from rest positions.
 std::vector<std::array<Vec2f, 3>> corner_uvs(const tracking::SurfaceMesh& mesh, const scenes::TextureSpec& texture,
                                              const RestFrame& rest);
-/// One pair of coordinates a vertex, for formats that have no more.
 std::vector<Vec2f> vertex_uvs(const tracking::SurfaceMesh& mesh, const scenes::TextureSpec& texture,
                               const RestFrame& rest);
 
