@@ -6,12 +6,16 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/extraction/extract_surface.h"
+#include "tracking/field/neighborhoods.h"
+#include "tracking/mesh/self_intersections.h"
 #include "tracking/mesh/topology.h"
+#include "tracking/tracker.h"
 #include "tracking/velocity/velocity_method.h"
 
 namespace flowskin::tracking {
@@ -119,6 +123,25 @@ void register_benchmarks(double radius) {
       return field.value(x, gradient) + gradient.x();
     });
   });
+  // The same at all points together, which find their neighbours in patches; then with known neighbours, as fairing
+  // has them.
+  add("neighborhoods", [radius](benchmark::State& state) {
+    const Body& of = body(radius);
+    for (auto iteration : state) benchmark::DoNotOptimize(Neighborhoods(of.field, of.points, 0.1 * radius));
+    report(state, of, of.points.size());
+  });
+  add("value_and_gradient_known", [radius](benchmark::State& state) {
+    const Body& of = body(radius);
+    const Neighborhoods neighborhoods(of.field, of.points, 0.1 * radius);
+    std::vector<double> sums(of.points.size());
+    for (auto iteration : state) {
+      neighborhoods.for_each([&](int i, const LocalField& local) {
+        Vec3 gradient;
+        sums[i] = local.value(of.points[i], gradient) + gradient.x();
+      });
+    }
+    report(state, of, of.points.size());
+  });
   add("jet", [radius](benchmark::State& state) {
     at_every_point(state, radius, [](const MetaballField& field, const Vec3& x) { return field.jet(x); });
   });
@@ -139,6 +162,31 @@ void register_benchmarks(double radius) {
     }
     report(state, of, of.particles.size());
   });
+}
+
+/// A hollow ball without intersections, of 60,000 triangles.
+void register_self_intersections() {
+  for (const int threads : {1, 2}) {
+    const auto run = [threads](benchmark::State& state) {
+      const MetaballField field(
+          test::lattice(1, 28, 0.2, 44, [](const Vec3& x) { return std::abs(x.norm() - 25) < 2.5; }), {},
+          default_field_settings(1));
+      const SurfaceGeometry surface = extract_surface(field, 0.75);
+      const int before = omp_get_max_threads();
+      omp_set_num_threads(threads);
+      std::size_t pairs = 0;
+      for (auto iteration : state) pairs = self_intersections(surface.positions, surface.triangles).size();
+      omp_set_num_threads(before);
+      const auto count = static_cast<double>(surface.triangles.size());
+      state.counters["pairs"] = static_cast<double>(pairs);
+      state.counters["triangles"] = count;
+      state.counters["us_per_triangle"] =
+          benchmark::Counter(count * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    };
+    benchmark::RegisterBenchmark(("self_intersections/threads:" + std::to_string(threads)).c_str(), run)
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
+  }
 }
 
 /// The methods on the large mesh, with one and two threads.
@@ -164,6 +212,47 @@ void register_large_meshes() {
   }
 }
 
+/// A frame of the tracker on the large mesh, without the guard: there and back in turns.
+void register_tracker() {
+  for (const int threads : {1, 2}) {
+    const auto run = [threads](benchmark::State& state) {
+      const int before = omp_get_max_threads();
+      omp_set_num_threads(threads);
+      const LargeMesh& mesh = large_mesh();
+      Particles here;
+      here.positions = here.rest_positions = mesh.particles;
+      here.velocities = mesh.field.velocities();
+      here.ids.resize(mesh.particles.size());
+      std::iota(here.ids.begin(), here.ids.end(), 1);
+      Particles there = here;
+      there.time = 1;
+      for (std::size_t i = 0; i < there.positions.size(); ++i) there.positions[i] += here.velocities[i];
+      TrackerSettings settings;
+      settings.spacing = 1;
+      settings.velocity = "curvature";
+      settings.guard = false;
+      Tracker tracker(settings, here);
+      double velocity = 0, projection = 0, fairing = 0;
+      int frames = 0;
+      for (auto iteration : state) {
+        tracker.advance(++frames % 2 == 1 ? there : here);
+        velocity += 1e3 * tracker.report().seconds_velocity;
+        projection += 1e3 * tracker.report().seconds_projection;
+        fairing += 1e3 * tracker.report().seconds_fairing;
+      }
+      omp_set_num_threads(before);
+      state.counters["vertices"] = static_cast<double>(tracker.mesh().positions.size());
+      state.counters["substeps"] = tracker.report().substeps;
+      state.counters["ms_velocity"] = velocity / frames;
+      state.counters["ms_projection"] = projection / frames;
+      state.counters["ms_fairing"] = fairing / frames;
+    };
+    benchmark::RegisterBenchmark(("track_frame/threads:" + std::to_string(threads)).c_str(), run)
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
+  }
+}
+
 }  // namespace
 }  // namespace flowskin::tracking
 
@@ -173,6 +262,8 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   for (const double radius : {2.0, 2.5, 3.0}) flowskin::tracking::register_benchmarks(radius);
   flowskin::tracking::register_large_meshes();
+  flowskin::tracking::register_tracker();
+  flowskin::tracking::register_self_intersections();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

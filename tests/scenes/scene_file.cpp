@@ -59,14 +59,16 @@ const char* const full_scene = R"({
     "force_cfl": 0.21, "max_time_step": 0.001, "skin": 0.15, "domain": {"min": [-5, -5, -5], "max": [5, 6, 7]}},
   "bodies": [
     {"shape": "block", "min": [0, 0, 0], "max": [1, 2, 3], "velocity": [1, 0, 0], "angular_velocity": [0, 1, 0]},
-    {"shape": "ball", "center": [0, 3, 0], "radius": 0.3},
+    {"shape": "ball", "center": [0, 3, 0], "radius": 0.3,
+      "cuts": [{"min": [-0.1, 2, -1], "max": [0.1, 3, 1]}, {"min": [0.2, 2, -1], "max": [0.3, 3, 1]}]},
     {"shape": "mesh", "file": "meshes/stairs.obj", "scale": 2, "rotate": [10, 20, 30], "translate": [0.1, 0.2, 0.3]}],
   "emitters": [{"center": [0, 4, 0], "direction": [0, -2, 1], "radius": 0.2, "speed": 1.5, "start": 0.5, "stop": 2}],
   "boundaries": [{"file": "meshes/stairs.obj", "scale": [1, 2, 3], "rotate": [0, 90, 0], "translate": [1, 0, 0],
     "slip": 0.4, "visible": false, "color": [0.1, 0.2, 0.3]}],
   "tracking": {"enabled": false, "velocity": "total", "integrator": "rk4", "steps_per_frame": 3, "max_motion": 0.2,
-    "radius": 2.1, "threshold": 0.7, "edge_length": 0.9, "fairing_iterations": 3, "fairing_stiffness": 0.4, "fairing_springs": "variable", "confidence": true, "remeshing": false, "guard": false},
-  "texture": {"image": "marble", "mapping": "planar", "tile_size": 0.3, "axis": [1, 0, 0], "rest_center": [0.1, 0, 0], "rest_size": 2},
+    "radius": 2.1, "threshold": 0.7, "edge_length": 0.9, "fairing_iterations": 3, "fairing_stiffness": 0.4, "fairing_springs": "variable", "confidence": true, "remeshing": false, "max_slip": 2.5, "topology": false, "guard": false},
+  "texture": {"image": "marble", "mapping": "planar", "tile_size": 0.3, "axis": [1, 0, 0], "rest_center": [0.1, 0, 0], "rest_size": 2,
+    "when_stretched": "fade", "stretch_limit": 3.5},
   "render": {"enabled": false, "camera": {"position": [1, 2, 3], "look_at": [0, 0.5, 0], "up": [0, 0, 1],
     "vertical_fov": 40}, "width": 320, "height": 180, "samples": 2, "style": "solid", "ground": false,
     "ground_height": -1, "ground_color": [0.3, 0.2, 0.1], "light_direction": [1, 2, 3], "light_size": 5, "exposure": 1.5},
@@ -88,6 +90,8 @@ TEST(SceneFile, WrittenScenesReadBackTheSame) {
   ASSERT_EQ(second.bodies.size(), 3u);
   EXPECT_EQ(second.bodies[2].body.mesh.positions, first.bodies[2].body.mesh.positions);
   EXPECT_GT(second.bodies[2].body.mesh.triangles.size(), 10u);
+  ASSERT_EQ(second.bodies[1].body.cuts.size(), 2u);
+  EXPECT_EQ(second.bodies[1].body.cuts[1].min, Vec3(0.2, 2, -1));
   EXPECT_EQ(second.boundaries.at(0).boundary.mesh.positions, first.boundaries.at(0).boundary.mesh.positions);
   EXPECT_EQ(second.boundaries[0].boundary.slip, 0.4);
   EXPECT_FALSE(second.boundaries[0].visible);
@@ -105,8 +109,9 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   for (std::size_t skip = 0; skip < lines.size(); ++skip) {
     const bool is_leaf =
         lines[skip].find("\": ") != std::string::npos && lines[skip].find_last_of("{[") != lines[skip].size() - 1;
-    const bool is_default =
-        lines[skip].find("[0, 0, 0]") != std::string::npos || lines[skip].find("\"simulation\",") != std::string::npos;
+    const bool is_default = lines[skip].find("[0, 0, 0]") != std::string::npos ||
+                            lines[skip].find("\"simulation\",") != std::string::npos ||
+                            lines[skip].find("\"cuts\": []") != std::string::npos;
     if (!is_leaf || is_default) continue;
     std::string text;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -133,6 +138,12 @@ TEST(SceneFile, PrescribedAndRecordedScenesReadBackTheSame) {
       {R"({"source": "prescribed", "spacing": 0.1, "positions": [[0, 0, 0], [0.1, 0.2, 1e-17]],
             "motion": {"type": "rotation", "center": [1, 2, 3], "angular_velocity": [0, 0, 3.5], "velocity": [1, 0, 0]}})",
        R"({"source": "prescribed", "spacing": 0.1, "positions": [[0, 0, 0]], "motion": {"type": "vortex", "rate": 0.3}})",
+       R"({"source": "prescribed", "spacing": 0.1, "positions": [[0, 0, 0]],
+            "motion": {"type": "necking", "axis": [0, 1, 0], "rate": 0.3, "length": 2, "center": [1, 2, 3]}})",
+       R"({"source": "prescribed", "spacing": 0.1, "positions": [[0, 0, 0]],
+            "motion": {"type": "hole", "axis": [0, 1, 0], "period": 0.3, "length": 2, "center": [1, 2, 3]}})",
+       R"({"source": "prescribed", "spacing": 0.1, "positions": [[0, 0, 0]],
+            "motion": {"type": "deformation", "rate": 2, "period": 0.3}})",
        R"({"source": "recorded", "spacing": 0.1, "recorded": {"files": "run/f_*.ply", "frame_interval": 0.04}})"}) {
     const Scene first = parse("{\"particles\": " + particles + "}");
     const std::string text = write_scene(first);

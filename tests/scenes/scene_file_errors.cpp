@@ -118,6 +118,9 @@ TEST(SceneFileErrors, WrongNames) {
       error_of(small_scene(R"("tracking": {"velocity": "curvatur"})")),
       AllOf(HasSubstr("tracking.velocity"), HasSubstr("did you mean \"curvature\"?"), HasSubstr("curvature-belyaev")));
   EXPECT_THAT(error_of(small_scene(R"("texture": {"mapping": "boxx"})")), HasSubstr("did you mean \"box\"?"));
+  EXPECT_THAT(error_of(small_scene(R"("texture": {"when_stretched": "fad"})")), HasSubstr("did you mean \"fade\"?"));
+  EXPECT_THAT(error_of(small_scene(R"("texture": {"stretch_limit": 1})")), HasSubstr("texture.stretch_limit"));
+  EXPECT_THAT(error_of(small_scene(R"("texture": {"stretch_limit": "four"})")), HasSubstr("texture.stretch_limit"));
   EXPECT_THAT(error_of(R"({"particles": {"source": "simulaton", "spacing": 0.1}, "bodies": []})"),
               HasSubstr("did you mean \"simulation\"?"));
 }
@@ -142,6 +145,14 @@ TEST(SceneFileErrors, Contradictions) {
   EXPECT_THAT(
       error_of(R"({"particles": {"spacing": 0.1}, "bodies": [{"shape": "block", "min": [0,0,0], "max": [1,-1,1]}]})"),
       HasSubstr("bodies[0].min must be smaller"));
+  EXPECT_THAT(
+      error_of(
+          R"({"particles": {"spacing": 0.1}, "bodies": [{"shape": "ball", "center": [0,0,0], "radius": 1, "cuts": [{"min": [0,0,0], "max": [1,0,1]}]}]})"),
+      HasSubstr("bodies[0].cuts has an entry 0 whose min is not smaller"));
+  EXPECT_THAT(
+      error_of(
+          R"({"particles": {"source": "prescribed", "spacing": 0.1, "positions": [[0,0,0]], "motion": {"type": "hole", "axis": [0, 0, 0]}}})"),
+      HasSubstr("particles.motion.axis is zero"));
   EXPECT_THAT(error_of(small_scene(R"("simulation": {"domain": {"min": [0,0,0], "max": [1,-1,1]}})")),
               HasSubstr("simulation.domain.min must be smaller"));
   EXPECT_THAT(error_of(small_scene(R"("render": {"camera": {"position": [1,1,1], "look_at": [1,1,1]}})")),

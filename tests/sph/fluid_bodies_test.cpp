@@ -41,6 +41,17 @@ TEST(FluidBodies, VolumeOfABall) {
   EXPECT_NEAR(static_cast<double>(points.size()) * 0.000125, volume, 0.03 * volume);
 }
 
+TEST(FluidBodies, CutsStayEmpty) {
+  // 8 x 8 x 8 particles less a slot 2 wide and 5 deep, and a corner that the slot does not touch.
+  FluidBody body = block({0, 0, 0}, {0.8, 0.8, 0.8});
+  body.cuts = {{{0.3, -1, -1}, {0.5, 0.5, 2}}, {{0.7, 0.7, 0.7}, {1, 1, 1}}};
+  const auto points = fill_bodies({body}, 0.1, {});
+  EXPECT_EQ(points.size(), 512U - 2 * 5 * 8 - 1);
+  for (const FluidPoint& p : points) EXPECT_FALSE(std::abs(p.position.x() - 0.4) < 0.1 && p.position.y() < 0.5);
+  body.cuts = {{{-1, -1, -1}, {1, 1, 1}}};
+  EXPECT_THROW(fill_bodies({body}, 0.1, {}), SettingsError);
+}
+
 TEST(FluidBodies, MeshIsFilledWhereTheShapeIs) {
   const Vec3 center(0.3, -1, 2);
   const TriangleMesh mesh = sphere(center, 0.5, 60);

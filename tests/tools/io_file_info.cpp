@@ -42,6 +42,24 @@ TEST_F(FileInfoTest, OpenAndInsideOutSurfacesAreUnsound) {
   EXPECT_NE(joined(info).find("not a sound closed surface"), std::string::npos);
 }
 
+// Two spheres through each other: closed, outward, but not a surface that bounds anything.
+TEST_F(FileInfoTest, SelfIntersectionsAreUnsound) {
+  const tracking::SurfaceMesh mesh = sphere_mesh(1);
+  const tracking::SurfaceMesh second = sphere_mesh(1, Vec3(1, 0, 0));
+  const int offset = static_cast<int>(mesh.positions.size());
+  std::ostringstream obj;
+  for (const auto* part : {&mesh, &second})
+    for (const Vec3& x : part->positions) obj << "v " << x.x() << ' ' << x.y() << ' ' << x.z() << '\n';
+  for (const auto& [a, b, c] : mesh.triangles) obj << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
+  for (const auto& [a, b, c] : second.triangles)
+    obj << "f " << a + offset + 1 << ' ' << b + offset + 1 << ' ' << c + offset + 1 << '\n';
+  const FileInfo info = describe_file(write_text("two.obj", obj.str()));
+  EXPECT_FALSE(info.sound);
+  EXPECT_NE(joined(info).find("pairs of triangles intersect, the first triangles "), std::string::npos) << joined(info);
+  EXPECT_NE(joined(info).find(" near ("), std::string::npos) << joined(info);
+  EXPECT_EQ(joined(info).find("open edges"), std::string::npos) << joined(info);
+}
+
 TEST_F(FileInfoTest, Particles) {
   write_particles_ply(path("p.ply"), particle_frame(10));
   const FileInfo info = describe_file(path("p.ply"));

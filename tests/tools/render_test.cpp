@@ -235,6 +235,38 @@ TEST(Render, SolidStyleShowsTheVertexColors) {
   EXPECT_LT(std::abs(middle[1] - middle[2]), 30);
 }
 
+TEST(Render, BlendsTheSecondTextureByItsShare) {
+  // The left half of the texture is red, the right half blue.
+  const Image two{2, 1, {{255, 0, 0}, {0, 0, 255}}};
+  const Renderer renderer(front_view(), {}, two, unit_box);
+  const auto all_at = [](float u) {
+    const Vec2f a(u, 0.5F), b(u + 1e-4F, 0.5F), c(u, 0.5F + 1e-4F);
+    return std::vector<std::array<Vec2f, 3>>{{a, b, c}, {a, b, c}};
+  };
+  SurfaceFrame red = square(1), blue = square(1);
+  red.corner_uvs = all_at(0.25F);
+  blue.corner_uvs = all_at(0.75F);
+  SurfaceFrame both = red;
+  both.corner_uvs2 = blue.corner_uvs;
+  both.texture_blend.assign(4, 0.0F);
+  EXPECT_EQ(renderer.draw(both).pixels, renderer.draw(red).pixels);
+  both.texture_blend.assign(4, 1.0F);
+  EXPECT_EQ(renderer.draw(both).pixels, renderer.draw(blue).pixels);
+  both.texture_blend.assign(4, 0.5F);
+  const Color middle = renderer.draw(both).at(120, 80);
+  // Half of each, in linear light: sRGB codes 188 for a reflectance of 0.5.
+  const Color purple = Renderer(front_view(), {}, flat_image({188, 0, 188}), unit_box).draw(square(1)).at(120, 80);
+  for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(middle[channel], purple[channel], 1) << channel;
+  // Without second coordinates it is the solid colour that shows.
+  both.corner_uvs2.clear();
+  both.texture_blend.assign(4, 1.0F);
+  scenes::RenderSpec solid = front_view();
+  solid.style = "solid";
+  EXPECT_EQ(renderer.draw(both).pixels, Renderer(solid, {}, two, unit_box).draw(both).pixels);
+  both.texture_blend.pop_back();
+  EXPECT_THROW(renderer.draw(both), InputError);
+}
+
 TEST(Render, NormalsStyleCanBeReadOff) {
   scenes::RenderSpec spec = front_view();
   spec.style = "normals";

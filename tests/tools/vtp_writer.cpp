@@ -91,6 +91,23 @@ TEST_F(VtpWriterTest, SurfaceArraysAreWhereTheHeaderSays) {
   EXPECT_TRUE(vtp.is_all_covered());
 }
 
+TEST_F(VtpWriterTest, BlendedTexturesHaveTwoSetsAndAWeight) {
+  SurfaceFrame frame = sphere_frame(2);
+  for (const Vec2f& uv : frame.vertex_uvs) {
+    frame.vertex_uvs2.push_back(2 * uv + Vec2f(1, 0));
+    frame.texture_blend.push_back(1 / (1 + uv.squaredNorm()));
+  }
+  frame.corner_uvs2 = frame.corner_uvs;
+  write_surface_vtp(path("a.vtp"), frame);
+  const Vtp vtp(read_text(path("a.vtp")));
+  expect_equal(vtp.values<float>("TCoords"), frame.vertex_uvs, 2);
+  expect_equal(vtp.values<float>("TCoords2"), frame.vertex_uvs2, 2);
+  EXPECT_EQ(vtp.values<float>("texture_blend"), frame.texture_blend);
+  for (const char* other : {"Normals", "color", "velocity", "rest_position", "id", "Points", "connectivity", "offsets"})
+    vtp.values<std::uint8_t>(other);
+  EXPECT_TRUE(vtp.is_all_covered());
+}
+
 TEST_F(VtpWriterTest, ParticleArraysAreWhereTheHeaderSays) {
   for (const int count : {0, 1, 33}) {
     const ParticleFrame frame = particle_frame(count);

@@ -1,5 +1,6 @@
 // Fairing with springs, relaxation and repair.
 #include "tracking/fairing/fairing.h"
+#include "tracking/fairing/bad_triangles.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -12,7 +13,6 @@
 #include "tracking/fairing/relaxation.h"
 #include "tracking/fairing/repair.h"
 #include "tracking/mesh/mesh_measures.h"
-#include "tracking/topology/guard.h"
 
 namespace flowskin::tracking {
 namespace {

@@ -84,4 +84,16 @@ inline Mat3 rotation(const Vec3& spin) {
   return angle > 0 ? Eigen::AngleAxisd(angle, spin / angle).toRotationMatrix() : Mat3::Identity();
 }
 
+/// Particles moved rigidly: rotation spin * t about the origin and translation drift * t.
+inline Particles rigidly_moved(const std::vector<Vec3>& start, const Vec3& spin, const Vec3& drift, double t) {
+  Particles particles = particles_at(start);
+  particles.time = t;
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const Vec3 turned = rotation(spin * t) * start[i];
+    particles.positions[i] = turned + drift * t;
+    particles.velocities[i] = spin.cross(turned) + drift;
+  }
+  return particles;
+}
+
 }  // namespace flowskin::tracking::test

@@ -43,5 +43,29 @@ TEST(TextureStretch, InfiniteWhereTheMaterialHadNoArea) {
   EXPECT_TRUE(std::isinf(texture_stretch(mesh).front().largest));
 }
 
+TEST(TextureStretch, OfASimpleShearFromAnyPlaces) {
+  // The singular values of [1 g; 0 1] are (sqrt(g^2 + 4) +- g) / 2.
+  const double shear = 3;
+  SurfaceMesh mesh = one_triangle();
+  std::vector<Vec3> places;
+  for (Vec3& x : mesh.positions) {
+    x.z() = 0;
+    places.push_back(x);
+    x.x() += shear * x.y();
+  }
+  mesh.rest_positions.assign(3, Vec3::Zero());  // not these
+  const Stretch stretch = texture_stretch(mesh, places).front();
+  EXPECT_NEAR(stretch.largest, (std::sqrt(13) + 3) / 2, 1e-12);
+  EXPECT_NEAR(stretch.smallest, (std::sqrt(13) - 3) / 2, 1e-12);
+}
+
+TEST(TextureStretch, DistortionIsTheWorseOfStretchAndSqueeze) {
+  EXPECT_EQ(distortion({3, 0.5}), 3);
+  EXPECT_EQ(distortion({3, 0.25}), 4);
+  EXPECT_EQ(distortion({0.5, 0.25}), 4);
+  EXPECT_EQ(distortion({1, 1}), 1);
+  EXPECT_TRUE(std::isinf(distortion({2, 0})));
+}
+
 }  // namespace
 }  // namespace flowskin::tracking

@@ -1,5 +1,5 @@
-// The guard must see each kind of fault and nothing else; material must survive a change of the mesh.
-#include "tracking/topology/guard.h"
+// Material must survive a change of the mesh.
+#include "tracking/topology/material.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,8 @@
 #include <set>
 
 #include "tests/tracking/mesh_test_shapes.h"
+#include "tracking/advection/projection.h"
 #include "tracking/extraction/extract_surface.h"
-#include "tracking/mesh/mesh_check.h"
-#include "tracking/mesh/mesh_measures.h"
-#include "tracking/topology/material.h"
-#include "tracking/topology/small_parts.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -22,147 +19,10 @@ using test::ball_of_particles;
 constexpr double kEdge = 0.8;
 const FieldSettings kField = default_field_settings(1);
 
-// What the guard says about a mesh in a field; the vertices are projected first, unless told otherwise.
-std::string verdict(const MetaballField& field, SurfaceGeometry mesh, bool project = true) {
-  const GuardSettings settings = default_guard(1, kEdge, kField);
-  const MeshTopology topology = build_topology(static_cast<int>(mesh.positions.size()), mesh.triangles);
-  Projection projection = project_to_surface(field, default_projection(kField), mesh.positions);
-  if (!project) projection.failed.clear();
-  const MeshDefects defects = find_defects(field, mesh.positions, mesh.triangles, topology, projection, settings);
-  const SurfaceGeometry fresh = extract_raw_surface(field, kEdge);
-  return test::joined(inspect(fresh, mesh.positions, mesh.triangles, defects, {}, settings).reasons);
-}
-
-void expect_reason(const std::string& reasons, const std::string& words) {
-  EXPECT_NE(reasons.find(words), std::string::npos) << "expected: " << words << "\nfound: " << reasons;
-}
-
 std::vector<Vec3> two_balls(double distance) {
   std::vector<Vec3> points = ball_of_particles(3.2);
   for (const Vec3& x : ball_of_particles(3.2, {distance, 0, 0}, 5)) points.push_back(x);
   return points;
-}
-
-TEST(Guard, IsContentWithAFreshMesh) {
-  for (const double radius : {2.3, 4.2, 6.3}) {
-    const MetaballField field(ball_of_particles(radius), {}, kField);
-    EXPECT_EQ(verdict(field, extract_surface(field, kEdge)), "");
-  }
-  const MetaballField field(two_balls(12), {}, kField);
-  EXPECT_EQ(verdict(field, extract_surface(field, kEdge)), "");
-}
-
-TEST(Guard, SeesAMissingPart) {
-  const MetaballField field(two_balls(12), {}, kField);
-  const SurfaceGeometry one = extract_surface(MetaballField(ball_of_particles(3.2), {}, kField), kEdge);
-  const std::string reasons = verdict(field, one);
-  expect_reason(reasons, "1 parts instead of 2");
-  expect_reason(reasons, "volume off by -");
-  expect_reason(reasons, "places of the surface are not covered");
-}
-
-TEST(Guard, DoesNotCountParts_SmallerThanItsLimit) {
-  // A clump that just breaks through the threshold beside the ball.
-  std::vector<Vec3> points = ball_of_particles(4.2);
-  for (int i = 0; i < 6; ++i) points.emplace_back(12 + 0.2 * (i % 2), 0.2 * (i / 2), 0);
-  const MetaballField field(points, {}, kField);
-  const SurfaceGeometry raw = extract_raw_surface(field, kEdge);
-  ASSERT_EQ(mesh_components(raw.positions, raw.triangles).count, 2);
-  const SurfaceGeometry ball = extract_surface(MetaballField(ball_of_particles(4.2), {}, kField), kEdge);
-  EXPECT_EQ(verdict(field, ball), "");
-}
-
-TEST(Guard, SeesPartsThatHaveMerged) {
-  const SurfaceGeometry apart = extract_surface(MetaballField(two_balls(8.2), {}, kField), kEdge);
-  ASSERT_EQ(mesh_components(apart.positions, apart.triangles).count, 2);
-  const MetaballField merged(two_balls(6.5), {}, kField);
-  SurfaceGeometry mesh = apart;
-  for (Vec3& x : mesh.positions) x[0] -= x[0] > 4.1 ? 1.7 : 0;  // the second ball has come nearer
-  expect_reason(verdict(merged, mesh), "2 parts instead of 1");
-}
-
-TEST(Guard, SeesAFold) {
-  const MetaballField field(ball_of_particles(4.2), {}, kField);
-  SurfaceGeometry mesh = extract_surface(field, kEdge);
-  const int neighbor = build_topology(static_cast<int>(mesh.positions.size()), mesh.triangles).ring(0)[0].vertex;
-  mesh.positions[0] += 1.7 * (mesh.positions[neighbor] - mesh.positions[0]);
-  expect_reason(verdict(field, mesh), "degenerate or folded triangles");
-}
-
-TEST(Guard, SeesATriangleWithoutArea) {
-  const MetaballField field(ball_of_particles(4.2), {}, kField);
-  SurfaceGeometry mesh = extract_surface(field, kEdge);
-  const Triangle triangle = mesh.triangles[17];
-  mesh.positions[triangle[0]] = mesh.positions[triangle[1]];
-  expect_reason(verdict(field, mesh), "degenerate or folded triangles");
-}
-
-TEST(Guard, SeesAMeshThatIsInsideOut) {
-  const MetaballField field(ball_of_particles(4.2), {}, kField);
-  expect_reason(verdict(field, test::flipped(extract_surface(field, kEdge))), "degenerate or folded triangles");
-}
-
-TEST(Guard, SeesVerticesOffTheSurface) {
-  const MetaballField field(ball_of_particles(4.2), {}, kField);
-  SurfaceGeometry mesh = extract_surface(field, kEdge);
-  mesh.positions[3] *= 4;  // where the field is silent
-  expect_reason(verdict(field, mesh), "1 vertices off the surface");
-}
-
-TEST(Guard, SeesOverstretchedEdgesAndTrianglesThatCutThroughTheFluid) {
-  const MetaballField field(ball_of_particles(6.3), {}, kField);
-  const SurfaceGeometry coarse = extract_surface(field, 5 * kEdge);
-  const std::string reasons = verdict(field, coarse);
-  expect_reason(reasons, "overstretched edges");
-  expect_reason(reasons, "triangles off the surface");
-  expect_reason(reasons, "volume off by -");
-}
-
-// A ball and a drop beside it, as a mesh with all its attributes.
-SurfaceMesh ball_and_drop() {
-  SurfaceGeometry geometry = extract_surface(MetaballField(ball_of_particles(3.2), {}, kField), kEdge);
-  SurfaceGeometry drop = test::tetrahedron();
-  for (Vec3& x : drop.positions) x += Vec3(9, 0, 0);
-  geometry = test::both(geometry, drop);
-  SurfaceMesh mesh;
-  mesh.positions = mesh.rest_positions = geometry.positions;
-  mesh.triangles = geometry.triangles;
-  mesh.velocities.resize(mesh.positions.size(), Vec3::Zero());
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) mesh.ids.push_back(mesh.next_id++);
-  return mesh;
-}
-
-TEST(SmallParts, GoOnlyWhereTheyAreSpoilt) {
-  SurfaceMesh mesh = ball_and_drop();
-  const int vertices = static_cast<int>(mesh.positions.size());
-  EXPECT_FALSE(drop_spoilt_parts({}, {}, 4, mesh));
-  EXPECT_EQ(static_cast<int>(mesh.positions.size()), vertices);
-
-  Projection of_ball, of_drop;
-  of_ball.failed = {3};
-  of_drop.failed = {vertices - 1};
-  EXPECT_FALSE(drop_spoilt_parts(of_ball, {5}, 4, mesh));  // large: left to the guard
-  EXPECT_TRUE(drop_spoilt_parts(of_drop, {}, 4, mesh));
-  EXPECT_EQ(static_cast<int>(mesh.positions.size()), vertices - 4);
-  EXPECT_EQ(test::joined(mesh_problems(mesh)), "");
-
-  mesh = ball_and_drop();
-  EXPECT_TRUE(drop_spoilt_parts({}, {static_cast<int>(mesh.triangles.size()) - 1}, 4, mesh));
-  mesh = ball_and_drop();
-  for (std::size_t t = mesh.triangles.size() - 4; t < mesh.triangles.size(); ++t) {
-    std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
-  }
-  EXPECT_TRUE(drop_spoilt_parts({}, {}, 4, mesh));
-  EXPECT_EQ(test::joined(mesh_problems(mesh)), "");
-}
-
-TEST(Guard, ToleratesWhatItIsTold) {
-  const MetaballField field(ball_of_particles(3.2), {}, kField);
-  const SurfaceGeometry mesh = extract_surface(field, kEdge);
-  const MeshDefects defects{1, 2, 3, 4};
-  const GuardSettings settings = default_guard(1, kEdge, kField);
-  EXPECT_TRUE(inspect(mesh, mesh.positions, mesh.triangles, defects, {1, 2, 3, 4}, settings).reasons.empty());
-  EXPECT_EQ(inspect(mesh, mesh.positions, mesh.triangles, defects, {0, 2, 3, 3}, settings).reasons.size(), 2U);
 }
 
 // Particles whose material has been moved from its rest position by a smooth deformation.
