@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
+#include <utility>
 
 #include "sph/parallel.h"
 
@@ -37,18 +39,20 @@ std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z, i
   return index;
 }
 
-void HilbertOrder::compute(std::span<const Eigen::Vector3f> points, float cell_size) {
+void HilbertOrder::compute(const PointView& points, float cell_size, std::vector<char>& scratch) {
   const std::size_t count = points.size();
-  keys_.resize(count);
-  sorted_keys_.resize(count);
   order_.resize(count);
-  sorted_order_.resize(count);
   if (count == 0) return;
+  scratch.resize(std::max(scratch.size(), count * (2 * sizeof(std::uint64_t) + sizeof(std::uint32_t))));
+  auto* keys = reinterpret_cast<std::uint64_t*>(scratch.data());
+  auto* sorted_keys = keys + count;
+  auto* order = order_.data();
+  auto* sorted_order = reinterpret_cast<std::uint32_t*>(sorted_keys + count);
 
   Eigen::Vector3f low = points[0], high = points[0];
-  for (const Eigen::Vector3f& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
+  for (std::size_t i = 1; i < count; ++i) {
+    low = low.cwiseMin(points[i]);
+    high = high.cwiseMax(points[i]);
   }
   const float extent = std::max((high - low).maxCoeff(), cell_size);
   const float cells = std::min(extent / cell_size + 1, 2097151.0F);
@@ -57,9 +61,9 @@ void HilbertOrder::compute(std::span<const Eigen::Vector3f> points, float cell_s
 #pragma omp parallel for schedule(static) num_threads(threads_for(count))
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3f cell = (points[i] - low) * scale;
-    keys_[i] = hilbert_index(static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
-                             static_cast<std::uint32_t>(cell.z()), levels);
-    order_[i] = static_cast<std::uint32_t>(i);
+    keys[i] = hilbert_index(static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
+                            static_cast<std::uint32_t>(cell.z()), levels);
+    order[i] = static_cast<std::uint32_t>(i);
   }
 
   // Stable radix sort, eleven bits at a time.
@@ -67,7 +71,7 @@ void HilbertOrder::compute(std::span<const Eigen::Vector3f> points, float cell_s
   constexpr std::size_t buckets = std::size_t{1} << digit_bits;
   for (int shift = 0; shift < 3 * levels; shift += digit_bits) {
     std::array<std::uint32_t, buckets> start{};
-    for (const std::uint64_t key : keys_) ++start[(key >> shift) & (buckets - 1)];
+    for (std::size_t i = 0; i < count; ++i) ++start[(keys[i] >> shift) & (buckets - 1)];
     std::uint32_t sum = 0;
     for (std::uint32_t& s : start) {
       const std::uint32_t in_bucket = s;
@@ -75,18 +79,16 @@ void HilbertOrder::compute(std::span<const Eigen::Vector3f> points, float cell_s
       sum += in_bucket;
     }
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t place = start[(keys_[i] >> shift) & (buckets - 1)]++;
-      sorted_keys_[place] = keys_[i];
-      sorted_order_[place] = order_[i];
+      const std::uint32_t place = start[(keys[i] >> shift) & (buckets - 1)]++;
+      sorted_keys[place] = keys[i];
+      sorted_order[place] = order[i];
     }
-    keys_.swap(sorted_keys_);
-    order_.swap(sorted_order_);
+    std::swap(keys, sorted_keys);
+    std::swap(order, sorted_order);
   }
+  if (order != order_.data()) std::memcpy(order_.data(), order, count * sizeof(std::uint32_t));
 }
 
-std::size_t HilbertOrder::memory_bytes() const {
-  return (keys_.capacity() + sorted_keys_.capacity()) * sizeof(std::uint64_t) +
-         (order_.capacity() + sorted_order_.capacity()) * sizeof(std::uint32_t);
-}
+std::size_t HilbertOrder::memory_bytes() const { return order_.capacity() * sizeof(std::uint32_t); }
 
 }  // namespace flowskin::sph

@@ -3,8 +3,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <span>
 #include <vector>
+
+#include "sph/point_view.h"
 
 namespace flowskin::sph {
 
@@ -12,18 +13,22 @@ namespace flowskin::sph {
 /// @param levels 1 to 21
 std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z, int levels);
 
-/// Sorts points along a Hilbert curve; keeps its arrays, so that sorting again allocates nothing.
+/// Sorts points along a Hilbert curve.
 class HilbertOrder {
  public:
   /// order()[k] is the index of the point that becomes the k-th. Points of one cell keep their order.
   /// @param cell_size edge of the curve's cells, in the unit of the points; made larger where 2^21 cells do not reach
-  void compute(std::span<const Eigen::Vector3f> points, float cell_size);
+  /// @param scratch is used on the way and grows to at least 20 bytes a point
+  void compute(const PointView& points, float cell_size, std::vector<char>& scratch);
+  void compute(const PointView& points, float cell_size) {
+    std::vector<char> scratch;
+    compute(points, cell_size, scratch);
+  }
   const std::vector<std::uint32_t>& order() const { return order_; }
   std::size_t memory_bytes() const;
 
  private:
-  std::vector<std::uint64_t> keys_, sorted_keys_;
-  std::vector<std::uint32_t> order_, sorted_order_;
+  std::vector<std::uint32_t> order_;
 };
 
 }  // namespace flowskin::sph

@@ -51,6 +51,9 @@ struct ParticleArrays {
     });
   }
 
+  /// Memory that belongs to nobody between two calls of rearrange().
+  std::vector<char>& scratch() { return scratch_; }
+
   std::size_t memory_bytes() {
     std::size_t bytes = scratch_.capacity();
     for_each([&](auto& values) { bytes += values.capacity() * sizeof(values[0]); });
@@ -71,18 +74,26 @@ struct ParticleArrays {
     function(shifts);
   }
 
-  // One raw buffer serves all arrays; their elements are plain numbers.
+  // One raw buffer serves all arrays; their elements are plain numbers. Large ones go in two halves, so that the buffer
+  // stays small.
   template <typename T>
   void rearrange_one(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
-    scratch_.resize(std::max(scratch_.size(), order.size() * sizeof(T)));
-    const char* from = reinterpret_cast<const char*>(values.data());
-    char* to = scratch_.data();
+    constexpr std::size_t part = sizeof(T) > 24 ? sizeof(T) / 2 : sizeof(T);
+    static_assert(sizeof(T) % part == 0);
+    scratch_.resize(std::max(scratch_.size(), order.size() * part));
+    char* data = reinterpret_cast<char*>(values.data());
+    char* buffer = scratch_.data();
+    for (std::size_t offset = 0; offset < sizeof(T); offset += part) {
 #pragma omp parallel for schedule(static) num_threads(threads_for(order.size()))
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      std::memcpy(to + k * sizeof(T), from + order[k] * sizeof(T), sizeof(T));
+      for (std::size_t k = 0; k < order.size(); ++k) {
+        std::memcpy(buffer + k * part, data + order[k] * sizeof(T) + offset, part);
+      }
+#pragma omp parallel for schedule(static) num_threads(threads_for(order.size()))
+      for (std::size_t k = 0; k < order.size(); ++k) {
+        std::memcpy(data + k * sizeof(T) + offset, buffer + k * part, part);
+      }
     }
     values.resize(order.size());
-    std::memcpy(reinterpret_cast<char*>(values.data()), to, order.size() * sizeof(T));
   }
 
   std::vector<char> scratch_;

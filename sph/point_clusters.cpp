@@ -57,7 +57,7 @@ PointClusters::~PointClusters() = default;
 PointClusters::PointClusters(PointClusters&&) noexcept = default;
 PointClusters& PointClusters::operator=(PointClusters&&) noexcept = default;
 
-void PointClusters::assign(std::span<const Eigen::Vector3f> points, float max_extent) {
+void PointClusters::assign(const PointView& points, float max_extent) {
   point_count_ = points.size();
   clusters_.clear();
   lanes_.clear();

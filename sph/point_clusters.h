@@ -5,8 +5,9 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
+
+#include "sph/point_view.h"
 
 namespace flowskin::sph {
 
@@ -35,7 +36,7 @@ class PointClusters {
   /// @param points in the order of a space-filling curve
   /// @param max_extent no cluster's box is longer than this along any axis, so that one stray point cannot make a
   ///        cluster that is near everything
-  void assign(std::span<const Eigen::Vector3f> points, float max_extent);
+  void assign(const PointView& points, float max_extent);
 
   std::size_t size() const { return clusters_.size(); }
   const PointCluster& operator[](std::size_t c) const { return clusters_[c]; }

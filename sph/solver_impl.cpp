@@ -246,18 +246,20 @@ bool SolverImpl::lists_outdated() const {
   // come nearer to them by the whole skin.
   const float skin = static_cast<float>(settings_.skin * settings_.spacing);
   Eigen::Vector3f low = Eigen::Vector3f::Constant(1e30F), high = -low;
-  const auto moved = [&](std::size_t i) {
-    const FluidPack& p = particles_.packs[i];
-    return Eigen::Vector3f(Eigen::Vector3f(p.x, p.y, p.z) - build_positions_[i]);
+  const auto moved = [&](std::size_t cluster, std::uint32_t lane) {
+    const FluidPack& p = particles_.packs[clusters_[cluster].first + lane];
+    return Eigen::Vector3f(Eigen::Vector3f(p.x, p.y, p.z) - clusters_.point(cluster, lane));
   };
 #pragma omp parallel num_threads(threads_for(particles_.size()))
   {
     Eigen::Vector3f my_low = low, my_high = high;
 #pragma omp for schedule(static)
-    for (std::size_t i = 0; i < particles_.size(); ++i) {
-      const Eigen::Vector3f d = moved(i);
-      my_low = my_low.cwiseMin(d);
-      my_high = my_high.cwiseMax(d);
+    for (std::size_t c = 0; c < clusters_.size(); ++c) {
+      for (std::uint32_t lane = 0; lane < clusters_[c].count; ++lane) {
+        const Eigen::Vector3f d = moved(c, lane);
+        my_low = my_low.cwiseMin(d);
+        my_high = my_high.cwiseMax(d);
+      }
     }
 #pragma omp critical
     {
@@ -274,10 +276,12 @@ bool SolverImpl::lists_outdated() const {
 #pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size())) \
     reduction(max                                                                     \
               : relative2, absolute2)
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const Eigen::Vector3f d = moved(i);
-    relative2 = std::max(relative2, (d - common).squaredNorm());
-    absolute2 = std::max(absolute2, d.squaredNorm());
+  for (std::size_t c = 0; c < clusters_.size(); ++c) {
+    for (std::uint32_t lane = 0; lane < clusters_[c].count; ++lane) {
+      const Eigen::Vector3f d = moved(c, lane);
+      relative2 = std::max(relative2, (d - common).squaredNorm());
+      absolute2 = std::max(absolute2, d.squaredNorm());
+    }
   }
   if (!boundary_.positions.empty() && absolute2 >= skin * skin) return true;
   return relative2 >= 0.25F * skin * skin;
@@ -286,23 +290,14 @@ bool SolverImpl::lists_outdated() const {
 void SolverImpl::rebuild_lists() {
   const Stopwatch watch(statistics_.seconds_neighbors);
   if (some_outside_) remove_outside();
-  const auto refresh_positions = [&] {
-    build_positions_.resize(particles_.size());
-#pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size()))
-    for (std::size_t i = 0; i < particles_.size(); ++i) {
-      const FluidPack& p = particles_.packs[i];
-      build_positions_[i] = Eigen::Vector3f(p.x, p.y, p.z);
-    }
-  };
-  refresh_positions();
+  const std::span<const FluidPack> packs = particles_.packs;
   if (particles_changed_ || ++builds_since_sort_ >= builds_per_sort) {
-    curve_.compute(build_positions_, static_cast<float>(settings_.spacing));
+    curve_.compute(packs, static_cast<float>(settings_.spacing), particles_.scratch());
     particles_.rearrange(curve_.order());
-    refresh_positions();
     builds_since_sort_ = 0;
   }
   particles_changed_ = false;
-  clusters_.assign(build_positions_, static_cast<float>(cluster_extent * settings_.spacing));
+  clusters_.assign(packs, static_cast<float>(cluster_extent * settings_.spacing));
   const auto radius = static_cast<float>((settings_.support_radius + settings_.skin) * settings_.spacing);
   fluid_lists_.build(clusters_, clusters_, radius);
   const auto wall_reach = static_cast<float>(wall_kernel_.support + settings_.skin * settings_.spacing);
@@ -401,8 +396,8 @@ void SolverImpl::throw_blow_up(std::size_t i) const {
 
 std::size_t SolverImpl::memory_bytes() const {
   std::size_t bytes = const_cast<ParticleArrays&>(particles_).memory_bytes() + boundary_.memory_bytes() +
-                      curve_.memory_bytes() + build_positions_.capacity() * sizeof(build_positions_[0]) +
-                      clusters_.memory_bytes() + fluid_lists_.memory_bytes() + wall_lists_.memory_bytes() +
+                      curve_.memory_bytes() + clusters_.memory_bytes() + fluid_lists_.memory_bytes() +
+                      wall_lists_.memory_bytes() +
                       wall_triangles_.capacity() * sizeof(decltype(wall_triangles_)::value_type);
   for (const auto& triangles : wall_triangles_) bytes += triangles.capacity() * sizeof(std::uint32_t);
   return bytes;

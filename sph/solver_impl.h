@@ -60,9 +60,8 @@ class SolverImpl {
   ParticleArrays particles_;
   std::uint64_t next_id_ = 0;
 
-  // Neighbour search. Positions at the last build tell how far particles have moved since.
+  // Neighbour search. The clusters keep the places of the last build, which tell how far particles have moved since.
   HilbertOrder curve_;
-  std::vector<Eigen::Vector3f> build_positions_;
   PointClusters clusters_;
   NeighborLists fluid_lists_, wall_lists_;
   std::vector<std::vector<std::uint32_t>> wall_triangles_;  // one list a cluster; empty away from walls
