@@ -33,10 +33,6 @@ void append_lists(const PointClusters& targets, std::size_t target, const PointC
   const PointCluster& cluster = targets[target];
   for (const std::uint32_t s : candidates) {
     if (sources[s].squared_distance(cluster.box_min, cluster.box_max) > squared_radius) continue;
-    // Grows by a quarter: doubling would waste a third of the memory.
-    if (entries.size() + PointCluster::width > entries.capacity()) {
-      entries.reserve(entries.capacity() + entries.capacity() / 4 + 256);
-    }
     append_near(targets.lanes(target), cluster.count, sources.lanes(s), sources[s], squared_radius, entries);
   }
 }
@@ -50,10 +46,10 @@ void NeighborLists::build(const PointClusters& targets, const PointClusters& sou
   const float padded = radius * (1 + 1e-5F);
 #pragma omp parallel num_threads(threads_for(targets.point_count()))
   {
-    std::vector<std::uint32_t> candidates;
+    // Each thread collects the entries of a block here, so that the blocks themselves have no room to spare.
+    std::vector<std::uint32_t> candidates, entries;
 #pragma omp for schedule(dynamic)
     for (std::size_t block = 0; block < blocks_.size(); ++block) {
-      std::vector<std::uint32_t>& entries = blocks_[block];
       entries.clear();
       const std::size_t end = std::min(targets.size(), (block + 1) * clusters_per_block);
       for (std::size_t first = block * clusters_per_block; first < end; first += clusters_per_query) {
@@ -69,6 +65,12 @@ void NeighborLists::build(const PointClusters& targets, const PointClusters& sou
           append_lists(targets, c, sources, candidates, padded * padded, entries);
           ranges_[c] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(entries.size() - begin)};
         }
+      }
+      std::vector<std::uint32_t>& kept = blocks_[block];
+      if (kept.capacity() < entries.size() || kept.capacity() > entries.size() + entries.size() / 8) {
+        kept = std::vector<std::uint32_t>(entries.begin(), entries.end());
+      } else {
+        kept.assign(entries.begin(), entries.end());
       }
     }
   }

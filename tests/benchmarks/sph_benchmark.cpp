@@ -106,26 +106,25 @@ class ReferenceLoop {
   std::vector<float> x_, y_, z_, vx_, vy_, vz_, density_, pressure_, ax_, ay_, az_;
 };
 
-// About 100,000 particles: a block that collapses in a box twice as long, after `warm_up` seconds.
-std::unique_ptr<Solver> dam_break(int edge, double warm_up) {
+// A block of edge^3 particles that collapses in a box twice as long, after `warm_up` steps.
+std::unique_ptr<Solver> dam_break(int edge, int warm_up) {
   const double spacing = 0.02, length = edge * spacing;
   SimulationSetup setup = block_setup(spacing, {0, 0, 0}, {length, length, length});
   setup.settings.viscosity = 0.01;
   setup.boundaries.push_back({closed_box({0, 0, 0}, {2 * length, 1.5 * length, length}), 0});
   auto solver = std::make_unique<Solver>(setup);
-  solver->advance_to(warm_up);
+  for (int k = 0; k < warm_up; ++k) solver->step();
   return solver;
 }
-
-constexpr int edge_of_block = 46;
 
 void solver_step(benchmark::State& state) {
   const int threads = omp_get_max_threads();
   omp_set_num_threads(static_cast<int>(state.range(0)));
-  static ReferenceLoop reference(edge_of_block);
-  const auto solver = dam_break(edge_of_block, 0.1);
+  const auto edge = static_cast<int>(state.range(1));
+  static ReferenceLoop reference(46);
+  const auto solver = dam_break(edge, edge > 150 ? 100 : 400);
   const SolverStatistics before = solver->statistics();
-  constexpr int steps = 20;
+  const int steps = edge > 60 ? 10 : 20;
   double solver_time = 0, reference_time = 0, rounds = 0;
   for (auto _ : state) {
     const double start = seconds_now();
@@ -153,12 +152,19 @@ void solver_step(benchmark::State& state) {
   omp_set_num_threads(threads);
 }
 BENCHMARK(solver_step)
-    ->ArgName("threads")
-    ->Arg(1)
-    ->Arg(2)
+    ->ArgNames({"threads", "edge"})
+    ->ArgsProduct({{1, 2}, {22, 46, 100}})
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
     ->Iterations(10);
+// Five million particles: two gigabytes, minutes.
+BENCHMARK(solver_step)
+    ->Name("solver_step_large")
+    ->ArgNames({"threads", "edge"})
+    ->Args({2, 171})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(3);
 
 void list_build(benchmark::State& state) {
   std::vector<Eigen::Vector3f> points(100000);
