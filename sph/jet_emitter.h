@@ -31,6 +31,12 @@ class JetEmitter {
   /// Birth time of the next layer (s); infinite when the emitter is done.
   double next_time() const;
 
+  /// What changes while it pours.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(layer_);
+  }
+
  private:
   Emitter emitter_;
   double spacing_;

@@ -37,6 +37,7 @@ struct PairCoefficients {
 
 /// Result for one particle.
 struct alignas(16) ParticleRates {
+  using plain_numbers = float;
   float ax, ay, az;        ///< Acceleration by pressure and viscosity, without gravity (m/s^2).
   float compression_rate;  ///< 1/s; continuity density only
 };

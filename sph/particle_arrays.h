@@ -54,6 +54,18 @@ struct ParticleArrays {
   /// Memory that belongs to nobody between two calls of rearrange().
   std::vector<char>& scratch() { return scratch_; }
 
+  /// All arrays, for StateArchive.
+  template <class Archive>
+  void visit(Archive& archive) {
+    for_each([&](auto& values) { archive(values); });
+  }
+  /// True where the arrays fit together.
+  bool is_consistent() {
+    bool same = true;
+    for_each([&](auto& values) { same = same && (values.size() == size() || values.empty()); });
+    return same;
+  }
+
   std::size_t memory_bytes() {
     std::size_t bytes = scratch_.capacity();
     for_each([&](auto& values) { bytes += values.capacity() * sizeof(values[0]); });

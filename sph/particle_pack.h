@@ -5,6 +5,7 @@ namespace flowskin::sph {
 
 /// A fluid particle in the pair loop. Positions are relative to the solver's origin, so that float is precise enough.
 struct alignas(32) FluidPack {
+  using plain_numbers = float;
   float x, y, z;      ///< m
   float vx, vy, vz;   ///< m/s
   float compression;  ///< rho / rho_0 - 1

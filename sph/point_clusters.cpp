@@ -107,6 +107,15 @@ void PointClusters::query(const Eigen::Vector3f& box_min, const Eigen::Vector3f&
   std::sort(found.begin(), found.end());
 }
 
+std::vector<Eigen::Vector3f> PointClusters::points() const {
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(point_count_);
+  for (std::size_t c = 0; c < clusters_.size(); ++c) {
+    for (std::uint32_t lane = 0; lane < clusters_[c].count; ++lane) points.push_back(point(c, lane));
+  }
+  return points;
+}
+
 std::size_t PointClusters::memory_bytes() const {
   std::size_t bytes = clusters_.capacity() * sizeof(PointCluster) + lanes_.capacity() * sizeof(Lanes);
   if (tree_) bytes += sizeof(Tree) + tree_->index.usedMemory(tree_->index);

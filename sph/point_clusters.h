@@ -50,6 +50,9 @@ class PointClusters {
     return {lanes_[c][0][lane], lanes_[c][1][lane], lanes_[c][2][lane]};
   }
 
+  /// All points as they were in assign().
+  std::vector<Eigen::Vector3f> points() const;
+
   /// Replaces `found` by the clusters whose box comes within `radius` of the box given, in ascending order.
   void query(const Eigen::Vector3f& box_min, const Eigen::Vector3f& box_max, float radius,
              std::vector<std::uint32_t>& found) const;

@@ -12,7 +12,12 @@ Solver::~Solver() = default;
 Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
 
-void Solver::advance_to(double time) { impl_->advance_to(time); }
+void Solver::advance_to(double time) {
+  impl_->advance_towards(time, [] { return false; });
+}
+bool Solver::advance_towards(double time, const std::function<bool()>& stop) {
+  return impl_->advance_towards(time, stop);
+}
 double Solver::step(double limit) { return impl_->step(limit); }
 double Solver::time() const { return impl_->time(); }
 std::size_t Solver::particle_count() const { return impl_->particles().size(); }
@@ -21,6 +26,8 @@ const SolverSettings& Solver::settings() const { return impl_->settings(); }
 const SolverStatistics& Solver::statistics() const { return impl_->statistics(); }
 std::size_t Solver::memory_bytes() const { return impl_->memory_bytes(); }
 std::vector<Vec3> Solver::boundary_positions() const { return impl_->boundary().positions; }
+void Solver::save(StateWriter& writer) const { impl_->save(writer); }
+void Solver::restore(StateReader& reader) { impl_->restore(reader); }
 
 FluidState Solver::state() const {
   const ParticleArrays& particles = impl_->particles();

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "sph/state_archive.h"
 #include "sph/triangle_mesh.h"
 
 namespace flowskin::sph {
@@ -116,6 +118,11 @@ struct FluidState {
 struct TimeStepReport {
   double step = 0, acoustic = 0, viscous = 0, force = 0;
   std::string limited_by;  ///< "acoustic", "viscous", "force", "output" or "setting"
+
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(step, acoustic, viscous, force, limited_by);
+  }
 };
 
 /// Counters since the start, and seconds spent per stage.
@@ -128,6 +135,13 @@ struct SolverStatistics {
   std::uint64_t steps_limited_by_acoustic = 0, steps_limited_by_viscous = 0, steps_limited_by_force = 0;
   TimeStepReport last_step;
   double seconds_neighbors = 0, seconds_forces = 0, seconds_integration = 0;
+
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(steps, list_rebuilds, left_domain, wall_crossings, emitted);
+    archive(steps_limited_by_acoustic, steps_limited_by_viscous, steps_limited_by_force, last_step);
+    archive(seconds_neighbors, seconds_forces, seconds_integration);
+  }
 };
 
 /// Energies of the fluid (J).
@@ -149,6 +163,9 @@ class Solver {
   /// Advances to time `time` (s) exactly, in as many adaptive steps as needed.
   /// @throws BlowUpError where the fluid blows up; the state of the last whole step stays readable.
   void advance_to(double time);
+  /// The same, but asks after each step whether to stop early. Going on later, or saving, restoring and going on, gives
+  /// the same results as if it had not stopped. @return false where it was stopped
+  bool advance_towards(double time, const std::function<bool()>& stop);
   /// One adaptive step of at most `limit` seconds; returns its length.
   double step(double limit = 1e30);
 
@@ -166,6 +183,13 @@ class Solver {
   std::size_t memory_bytes() const;
   /// Boundary particles (m), for pictures and checks.
   std::vector<Vec3> boundary_positions() const;
+
+  /// Saves all that the future depends on but the set-up; the solver goes on as if nothing had been.
+  void save(StateWriter& writer) const;
+  /// Makes this solver the one that was saved: with the same set-up, all that follows is the same, bit for bit.
+  /// max_speed, speed_of_sound and the limits of the time step may be others than they were.
+  /// @throws StateError where this is no state of a solver with this set-up; the solver is unusable then.
+  void restore(StateReader& reader);
 
  private:
   std::unique_ptr<SolverImpl> impl_;

@@ -96,8 +96,9 @@ SolverImpl::SolverImpl(SimulationSetup setup) : settings_((check_setup(setup), s
   finish_step(0);
 }
 
-void SolverImpl::advance_to(double time) {
+bool SolverImpl::advance_towards(double time, const std::function<bool()>& stop) {
   while (time_ < time) {
+    if (stop()) return false;
     const double left = time - time_;
     const double longest = choose_step(left).step;
     // The last two steps share what is left, so that none is tiny.
@@ -112,6 +113,7 @@ void SolverImpl::advance_to(double time) {
     rebuild_lists();
     evaluate_forces();
   }
+  return true;
 }
 
 double SolverImpl::step(double limit) {
@@ -297,13 +299,17 @@ void SolverImpl::rebuild_lists() {
     builds_since_sort_ = 0;
   }
   particles_changed_ = false;
-  clusters_.assign(packs, static_cast<float>(cluster_extent * settings_.spacing));
+  build_lists(packs);
+  ++statistics_.list_rebuilds;
+}
+
+void SolverImpl::build_lists(const PointView& places) {
+  clusters_.assign(places, static_cast<float>(cluster_extent * settings_.spacing));
   const auto radius = static_cast<float>((settings_.support_radius + settings_.skin) * settings_.spacing);
   fluid_lists_.build(clusters_, clusters_, radius);
   const auto wall_reach = static_cast<float>(wall_kernel_.support + settings_.skin * settings_.spacing);
   wall_lists_.build(clusters_, boundary_.clusters, wall_reach);
   collect_wall_triangles();
-  ++statistics_.list_rebuilds;
 }
 
 void SolverImpl::collect_wall_triangles() {
@@ -392,6 +398,19 @@ void SolverImpl::throw_blow_up(std::size_t i) const {
                "acoustic_cfl";
   }
   throw BlowUpError(message);
+}
+
+void SolverImpl::save(StateWriter& writer) const {
+  std::vector<Eigen::Vector3f> places = clusters_.points();
+  const_cast<SolverImpl*>(this)->visit(writer, places);
+}
+
+void SolverImpl::restore(StateReader& reader) {
+  std::vector<Eigen::Vector3f> places;
+  visit(reader, places);
+  if (!particles_.is_consistent() || places.size() != particles_.size())
+    throw StateError("the saved state of the solver contradicts itself");
+  build_lists(std::span<const Eigen::Vector3f>(places));
 }
 
 std::size_t SolverImpl::memory_bytes() const {

@@ -1,6 +1,7 @@
 // What is behind sph::Solver: one step is step(), the rest are its parts in order.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ class SolverImpl {
  public:
   explicit SolverImpl(SimulationSetup setup);
 
-  void advance_to(double time);
+  bool advance_towards(double time, const std::function<bool()>& stop);
   double step(double limit);
 
   double time() const { return time_; }
@@ -29,7 +30,24 @@ class SolverImpl {
   double particle_mass() const { return mass_; }
   std::size_t memory_bytes() const;
 
+  void save(StateWriter& writer) const;
+  void restore(StateReader& reader);
+
  private:
+  /// All that the next step depends on, but the set-up and what follows from the rest: lists and clusters are functions
+  /// of the positions at their last build, packs' places in memory of the order of the particles. Whatever a step
+  /// leaves behind for the next one belongs here: tests/sph/restart_test.cpp compares each feature with and without a
+  /// stop.
+  /// @param places of the particles at the last build of the lists, relative to the origin
+  template <class Archive>
+  void visit(Archive& archive, std::vector<Eigen::Vector3f>& places) {
+    archive.section("solver");
+    archive(time_, next_id_, particles_);
+    archive.each(emitters_);
+    archive(places, particles_changed_, builds_since_sort_);
+    archive(greatest_speed_, greatest_acceleration_, some_outside_, statistics_);
+  }
+
   TimeStepReport choose_step(double limit) const;
   /// First half of the kick, then the drift, with the wall guard; fills the packs with the state that forces are needed
   /// of.
@@ -42,6 +60,8 @@ class SolverImpl {
   /// Whether some pair may have come into reach that is not in the lists.
   bool lists_outdated() const;
   void rebuild_lists();
+  /// Clusters and lists of the particles at these places.
+  void build_lists(const PointView& places);
   void collect_wall_triangles();
   void evaluate_forces();
   /// Second half of the kick, the compression, and the limits of what is believable.
