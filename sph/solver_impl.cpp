@@ -379,6 +379,9 @@ void SolverImpl::throw_blow_up(std::size_t i) const {
                         std::to_string(particles_.ids[i]) + " at (" + number(x.x()) + ", " + number(x.y()) + ", " +
                         number(x.z()) + ") m ";
   const double speed = particles_.velocities[i].norm();
+  // Where the user chose the speed of sound, raising max_speed would change nothing.
+  const bool sound_is_automatic = std::abs(settings_.speed_of_sound - 10 * settings_.max_speed) < 1e-9;
+  const std::string limiting_speed = sound_is_automatic ? "max_speed" : "speed_of_sound";
   if (!std::isfinite(rate.ax + rate.ay + rate.az + rate.compression_rate)) {
     message +=
         "has a force that is not a number; likely particles at nearly the same place or a time step that is too "
@@ -387,15 +390,14 @@ void SolverImpl::throw_blow_up(std::size_t i) const {
     message += "moves at " + number(speed) + " m/s, faster than the speed of sound of the set-up, " +
                number(settings_.speed_of_sound) +
                " m/s; likely the flow is faster than max_speed = " + number(settings_.max_speed) +
-               " m/s allows for, or the time step is too long: raise max_speed, or lower "
-               "acoustic_cfl and viscous_cfl";
+               " m/s allows for, or the time step is too long: raise " + limiting_speed +
+               ", or lower acoustic_cfl and viscous_cfl";
   } else {
     message += "has " + number(1 + double(particles_.compressions[i])) +
                " times the rest density; likely the fluid is pressed into a space that is too small, or hits a wall "
                "faster than max_speed = " +
                number(settings_.max_speed) +
-               " m/s allows for: raise max_speed or lower "
-               "acoustic_cfl";
+               " m/s allows for: raise " + limiting_speed + " or lower acoustic_cfl";
   }
   throw BlowUpError(message);
 }

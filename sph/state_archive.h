@@ -67,8 +67,9 @@ struct IsPlain<std::array<T, N>> : IsPlain<T> {};
 template <class T>
 concept Plain = IsPlain<T>::value;
 
+/// Lists its fields. (Eigen's matrices have another visit().)
 template <class T, class Archive>
-concept Visited = requires(T& value, Archive& archive) {
+concept Visited = !FixedMatrix<T> && !DynamicMatrix<T> && requires(T & value, Archive& archive) {
   value.visit(archive);
 };
 

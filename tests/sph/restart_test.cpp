@@ -123,7 +123,7 @@ TEST_P(Restart, GoesOnBitForBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Features, Restart, ::testing::ValuesIn(cases()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& instance) { return instance.param.name; });
 
 TEST(RestartErrors, SavingDisturbsNothing) {
   Solver quiet(splash()), disturbed(splash());
