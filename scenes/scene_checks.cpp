@@ -89,11 +89,28 @@ void check_particles(const Scene& scene, Checker& checker) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_body(scene, i, checker);
 }
 
+void check_periods(const Scene& scene, Checker& checker) {
+  const sph::SolverSettings& solver = scene.solver;
+  const double shortest = 2 * solver.support_radius * scene.particles.spacing;
+  bool any = false;
+  for (int a = 0; a < 3; ++a) {
+    any = any || solver.periodic[a];
+    const double period = solver.domain.max[a] - solver.domain.min[a];
+    checker.require(!solver.periodic[a] || period >= shortest * (1 - 1e-9), "simulation.periodic",
+                    fmt::format("is true for {}, where simulation.domain is {} m long; expected at least twice the "
+                                "support radius, {} m",
+                                "xyz"[a], write_number(period), write_number(shortest)));
+  }
+  checker.require(!any || !scene.tracking.enabled, "simulation.periodic",
+                  "leaves the surface open where the fluid leaves the domain, and surfaces are not tracked across "
+                  "it; set tracking.enabled to false");
+}
+
 void check_solver(const Scene& scene, Checker& checker) {
   const sph::SolverSettings& solver = scene.solver;
-  const bool no_domain = (solver.domain.min - solver.domain.max).isZero(0);
-  checker.require(no_domain || is_ordered(solver.domain), "simulation.domain.min",
-                  "must be smaller than simulation.domain.max along every axis");
+  checker.require((solver.domain.min.array() <= solver.domain.max.array()).all(), "simulation.domain.min",
+                  "must not be greater than simulation.domain.max along any axis");
+  check_periods(scene, checker);
   checker.require(solver.speed_of_sound == 0 || solver.speed_of_sound > solver.max_speed, "simulation.speed_of_sound",
                   "must be larger than simulation.max_speed (ten times as large keeps the density within 1 %)");
   for (std::size_t i = 0; i < scene.emitters.size(); ++i) {

@@ -212,9 +212,13 @@ Table<Scene> solver_keys() {
       key<S>("simulation.skin", at(solver, &Settings::skin), number(at_least(0, 2)), "spacings",
              "Skin of the neighbour lists; 0: the recommended one."),
       key<S>("simulation.domain.min", at(solver, &Settings::domain, &sph::Box::min), vector(), "m",
-             "Lower corner of the domain: particles that leave it are removed. Equal corners: no limit."),
+             "Lower corner of the domain: particles that leave it are removed. No limit along axes where both corners "
+             "are the same."),
       key<S>("simulation.domain.max", at(solver, &Settings::domain, &sph::Box::max), vector(), "m",
              "Upper corner of the domain."),
+      key<S>("simulation.periodic", at(solver, &Settings::periodic), axes(), "",
+             "Axes along which the domain is periodic: what leaves it comes back through the opposite face. Needs "
+             "tracking.enabled false."),
   };
   for (Key<S>& key : table) {
     if (key.condition.empty()) key.condition = "particles.source \"simulation\"";

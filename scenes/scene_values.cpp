@@ -131,6 +131,22 @@ Kind<Vec3> scale() {
   return {"number or 3 numbers, none of them 0", read, [](const Vec3& value, int) { return write_triple(value); }};
 }
 
+Kind<std::array<bool, 3>> axes() {
+  using Axes = std::array<bool, 3>;
+  const auto read = [one = boolean().read](const JsonNode& node) {
+    if (node.type != JsonNode::Type::list || node.children.size() != 3) throw Mismatch{describe(node), ""};
+    Axes axes{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const JsonNode& child = node.children[a];
+      if (child.type != JsonNode::Type::boolean) throw Mismatch{describe(child) + " in the list", "", child.offset};
+      axes[a] = one(child);
+    }
+    return axes;
+  };
+  return {"3 times true or false (x, y, z)", read,
+          [](const Axes& axes, int) { return fmt::format("[{}, {}, {}]", axes[0], axes[1], axes[2]); }};
+}
+
 Kind<std::array<double, 3>> color() {
   using Color = std::array<double, 3>;
   return {"3 numbers from 0 to 1 (red, green, blue)",

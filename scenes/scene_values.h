@@ -58,6 +58,8 @@ Kind<std::string> choice(const std::vector<std::string>& names, const std::strin
 Kind<Vec3> vector(double limit = max_coordinate);
 /// Three numbers, or one that stands for all three; none is 0.
 Kind<Vec3> scale();
+/// True or false for each of x, y and z.
+Kind<std::array<bool, 3>> axes();
 /// Red, green, blue.
 Kind<std::array<double, 3>> color();
 /// Any number of points.

@@ -6,18 +6,18 @@
 namespace flowskin::sph {
 
 BoundaryParticles sample_boundaries(const std::vector<Boundary>& boundaries, const SolverSettings& settings,
-                                    const WallKernel& wall) {
+                                    const WallKernel& wall, const PeriodicBox& periodic) {
   BoundaryParticles result;
-  std::vector<const TriangleMesh*> meshes;
+  std::vector<TriangleMesh> meshes;
   for (const Boundary& boundary : boundaries) {
-    meshes.push_back(&boundary.mesh);
-    for (const Vec3& p : sample_surface(boundary.mesh, wall.sample_spacing)) {
+    meshes.push_back(periodic.clip(boundary.mesh));
+    for (const Vec3& p : sample_surface(meshes.back(), wall.sample_spacing, periodic)) {
       result.positions.push_back(p);
       result.slips.push_back(boundary.slip);
     }
   }
-  result.volumes = boundary_volumes(result.positions, settings.kernel, wall.support);
-  if (!meshes.empty()) result.guard = WallGuard(meshes, 2 * settings.spacing);
+  result.volumes = boundary_volumes(result.positions, settings.kernel, wall.support, periodic);
+  if (!meshes.empty()) result.guard = WallGuard(meshes, 2 * settings.spacing, periodic);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sph/particle_pack.h"
+#include "sph/periodic_box.h"
 #include "sph/point_clusters.h"
 #include "sph/solver.h"
 #include "sph/wall_guard.h"
@@ -25,7 +26,7 @@ struct BoundaryParticles {
 
 /// Samples all walls. `packs` and `clusters` stay empty until place_at_origin().
 BoundaryParticles sample_boundaries(const std::vector<Boundary>& boundaries, const SolverSettings& settings,
-                                    const WallKernel& wall);
+                                    const WallKernel& wall, const PeriodicBox& periodic);
 
 /// Fills packs and clusters with positions relative to `origin`.
 void place_at_origin(BoundaryParticles& boundary, const Vec3& origin, const WallKernel& wall);

@@ -19,7 +19,8 @@ constexpr double fill_resolution = 0.3;   // in spacings: steps in which gaps ar
 
 class SurfaceSampler {
  public:
-  SurfaceSampler(const TriangleMesh& mesh, double spacing) : mesh_(mesh), spacing_(spacing), grid_(spacing) {
+  SurfaceSampler(const TriangleMesh& mesh, double spacing, const PeriodicBox& periodic)
+      : mesh_(mesh), spacing_(spacing), periodic_(periodic), grid_(spacing) {
     for (const auto& t : mesh.triangles) {
       const Vec3 normal = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
       const double length = normal.norm();
@@ -38,10 +39,31 @@ class SurfaceSampler {
   using Triangle = std::array<int, 3>;
   const Vec3& corner(const Triangle& t, int k) const { return mesh_.positions[t[k]]; }
 
-  void add(const Vec3& p, double distance) {
-    if (grid_.has_near(p, distance * spacing_)) return;
+  void add(const Vec3& place, double distance) {
+    const Vec3 p = periodic_.wrap(place);
+    if (has_near_image(grid_, p, distance * spacing_, periodic_)) return;
     grid_.insert(p);
     samples_.push_back(p);
+  }
+
+  // Whether an edge lies in a face of the periodic box: there the surface goes on at the other side.
+  bool in_seam(const Vec3& a, const Vec3& b) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!periodic_.along(axis)) continue;
+      for (const double face : {periodic_.box().min[axis], periodic_.box().max[axis]}) {
+        if (std::abs(a[axis] - face) < 1e-6 * spacing_ && std::abs(b[axis] - face) < 1e-6 * spacing_) return true;
+      }
+    }
+    return false;
+  }
+
+  // The step of a lattice along a direction: fits a whole number of times into the period where there is one.
+  double fitted(double step, const Vec3& direction) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!periodic_.along(axis) || std::abs(direction[axis]) < 1 - 1e-9) continue;
+      return periodic_.period()[axis] / std::max(1.0, std::round(periodic_.period()[axis] / step));
+    }
+    return step;
   }
 
   // Edges are told apart by the positions of their ends: meshes with split vertices are common.
@@ -64,6 +86,7 @@ class SurfaceSampler {
       }
     }
     const auto is_sharp = [&](const Edge& e) {
+      if (e.triangles.size() == 1 && in_seam(e.a, e.b)) return false;
       return e.triangles.size() != 2 || normals_[e.triangles[0]].dot(normals_[e.triangles[1]]) < sharp_cosine;
     };
     std::erase_if(edges, [&](const auto& entry) { return !is_sharp(entry.second); });
@@ -86,6 +109,7 @@ class SurfaceSampler {
     const Vec3 u = (helper - helper.dot(n) * n).normalized(), v = n.cross(u);
     const Vec3 &a = corner(mesh_.triangles[t], 0), &b = corner(mesh_.triangles[t], 1),
                &c = corner(mesh_.triangles[t], 2);
+    const double step_u = fitted(step, u), step_v = fitted(step, v);
     const auto flat = [&](const Vec3& p) { return Eigen::Vector2d(p.dot(u), p.dot(v)); };
     const Eigen::Vector2d a2 = flat(a), b2 = flat(b), c2 = flat(c);
     const Eigen::Vector2d low = a2.cwiseMin(b2).cwiseMin(c2), high = a2.cwiseMax(b2).cwiseMax(c2);
@@ -93,11 +117,11 @@ class SurfaceSampler {
     const double area2 = cross(b2 - a2, c2 - a2), tolerance = 1e-9;
     const Vec3 above_origin = n * n.dot(a);
     const double small = 1e-6;  // so that a lattice line on the triangle's edge counts as inside
-    for (auto i = std::llround(std::ceil(low.x() / step - small));
-         i <= std::llround(std::floor(high.x() / step + small)); ++i) {
-      for (auto j = std::llround(std::ceil(low.y() / step - small));
-           j <= std::llround(std::floor(high.y() / step + small)); ++j) {
-        const Eigen::Vector2d p(static_cast<double>(i) * step, static_cast<double>(j) * step);
+    for (auto i = std::llround(std::ceil(low.x() / step_u - small));
+         i <= std::llround(std::floor(high.x() / step_u + small)); ++i) {
+      for (auto j = std::llround(std::ceil(low.y() / step_v - small));
+           j <= std::llround(std::floor(high.y() / step_v + small)); ++j) {
+        const Eigen::Vector2d p(static_cast<double>(i) * step_u, static_cast<double>(j) * step_v);
         const double wa = cross(b2 - p, c2 - p) / area2, wb = cross(c2 - p, a2 - p) / area2;
         if (wa < -tolerance || wb < -tolerance || 1 - wa - wb < -tolerance) continue;
         visit(above_origin + p.x() * u + p.y() * v);
@@ -116,6 +140,7 @@ class SurfaceSampler {
 
   const TriangleMesh& mesh_;
   double spacing_;
+  const PeriodicBox& periodic_;
   PointGrid grid_;
   std::vector<Vec3> normals_;  // zero for triangles without area
   std::vector<Vec3> samples_;
@@ -133,11 +158,12 @@ struct PositionCloud {
 
 }  // namespace
 
-std::vector<Vec3> sample_surface(const TriangleMesh& mesh, double spacing) {
-  return SurfaceSampler(mesh, spacing).run();
+std::vector<Vec3> sample_surface(const TriangleMesh& mesh, double spacing, const PeriodicBox& periodic) {
+  return SurfaceSampler(mesh, spacing, periodic).run();
 }
 
-std::vector<double> boundary_volumes(const std::vector<Vec3>& positions, KernelType kernel, double support_radius) {
+std::vector<double> boundary_volumes(const std::vector<Vec3>& positions, KernelType kernel, double support_radius,
+                                     const PeriodicBox& periodic) {
   std::vector<double> volumes(positions.size());
   if (positions.empty()) return volumes;
   using Tree =
@@ -145,12 +171,16 @@ std::vector<double> boundary_volumes(const std::vector<Vec3>& positions, KernelT
   const PositionCloud cloud{positions};
   const Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
   const nanoflann::SearchParams sorted;  // by distance, so that the sum does not depend on the shape of the tree
+  const Vec3 reach = Vec3::Constant(support_radius);
 #pragma omp parallel for schedule(static)
   for (std::size_t b = 0; b < positions.size(); ++b) {
     std::vector<std::pair<std::uint32_t, double>> found;
-    tree.radiusSearch(positions[b].data(), support_radius * support_radius, found, sorted);
     double sum = 0;
-    for (const auto& [k, distance2] : found) sum += kernel_value(kernel, std::sqrt(distance2), support_radius);
+    periodic.for_each_touching_image(positions[b] - reach, positions[b] + reach, [&](const Vec3& shift) {
+      const Vec3 image = positions[b] + shift;
+      tree.radiusSearch(image.data(), support_radius * support_radius, found, sorted);
+      for (const auto& [k, distance2] : found) sum += kernel_value(kernel, std::sqrt(distance2), support_radius);
+    });
     volumes[b] = 1 / sum;
   }
   return volumes;

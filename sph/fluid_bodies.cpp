@@ -68,6 +68,26 @@ std::vector<Vec3> fill(const FluidBody& body, double spacing, const std::string&
   return fill_block(body, spacing, name);
 }
 
+// A lattice that fills a period must go on across the seam as if there were none.
+void check_fits_period(const std::vector<Vec3>& positions, double spacing, const PeriodicBox& periodic,
+                       const std::string& name) {
+  for (int a = 0; a < 3 && !positions.empty(); ++a) {
+    if (!periodic.along(a)) continue;
+    double low = positions[0][a], high = low;
+    for (const Vec3& p : positions) low = std::min(low, p[a]), high = std::max(high, p[a]);
+    const double period = periodic.period()[a], excess = high - low + spacing - period;
+    if (excess < -0.75 * spacing || std::abs(excess) < 1e-3 * spacing) continue;
+    const double count = std::max(1.0, std::round(period / spacing));
+    const std::string axis(1, static_cast<char>('x' + a));
+    if (excess > 0.75 * spacing) {
+      throw SettingsError(name + " is longer along " + axis + " than the period of " + std::to_string(period) + " m");
+    }
+    throw SettingsError(name + " fills the period of " + std::to_string(period) + " m along " + axis +
+                        ", which is no whole number of spacings of " + std::to_string(spacing) +
+                        " m; choose a spacing of " + std::to_string(period / count) + " m, or another period");
+  }
+}
+
 bool is_cut_out(const FluidBody& body, const Vec3& p) {
   return std::any_of(body.cuts.begin(), body.cuts.end(), [&](const Box& cut) {
     return (p.array() >= cut.min.array()).all() && (p.array() <= cut.max.array()).all();
@@ -77,7 +97,7 @@ bool is_cut_out(const FluidBody& body, const Vec3& p) {
 }  // namespace
 
 std::vector<FluidPoint> fill_bodies(const std::vector<FluidBody>& bodies, double spacing,
-                                    const std::vector<Vec3>& boundary_positions) {
+                                    const std::vector<Vec3>& boundary_positions, const PeriodicBox& periodic) {
   PointGrid walls(spacing), fluid(spacing);
   for (const Vec3& p : boundary_positions) walls.insert(p);
 
@@ -89,9 +109,11 @@ std::vector<FluidPoint> fill_bodies(const std::vector<FluidBody>& bodies, double
       throw SettingsError(name + " holds no particle: it is smaller than the spacing of " + std::to_string(spacing) +
                           " m");
     }
+    check_fits_period(positions, spacing, periodic, name);
     std::erase_if(positions, [&](const Vec3& p) {
-      return is_cut_out(bodies[b], p) || walls.has_near(p, wall_distance * spacing) ||
-             fluid.has_near(p, body_distance * spacing);
+      const Vec3 inside = periodic.wrap(p);
+      return is_cut_out(bodies[b], p) || has_near_image(walls, inside, wall_distance * spacing, periodic) ||
+             has_near_image(fluid, inside, body_distance * spacing, periodic);
     });
     if (positions.empty()) {
       throw SettingsError(name + " has no particle left: it is cut out whole, or lies in other bodies or on a wall");
@@ -99,8 +121,9 @@ std::vector<FluidPoint> fill_bodies(const std::vector<FluidBody>& bodies, double
     Vec3 centroid = Vec3::Zero();
     for (const Vec3& p : positions) centroid += p / static_cast<double>(positions.size());
     for (const Vec3& p : positions) {
-      points.push_back({p, bodies[b].velocity + bodies[b].angular_velocity.cross(p - centroid)});
-      fluid.insert(p);
+      const Vec3 inside = periodic.wrap(p);
+      points.push_back({inside, bodies[b].velocity + bodies[b].angular_velocity.cross(p - centroid)});
+      fluid.insert(inside);
     }
   }
   return points;

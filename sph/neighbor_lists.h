@@ -17,7 +17,10 @@ class NeighborLists {
  public:
   /// Builds the lists anew, in parallel; the result does not depend on the number of threads. `targets` and `sources`
   /// may be the same object: each point is then its own neighbour. Arrays are kept from build to build.
-  void build(const PointClusters& targets, const PointClusters& sources, float radius);
+  /// @param period lengths of a periodic box around the origin that holds all points, 0 along axes that are not
+  ///        periodic. Distances are then those to the nearest image; no source is listed twice.
+  void build(const PointClusters& targets, const PointClusters& sources, float radius,
+             const Eigen::Vector3f& period = Eigen::Vector3f::Zero());
 
   /// Sources near cluster `cluster` of the targets.
   std::span<const std::uint32_t> of_cluster(std::size_t cluster) const {
@@ -30,6 +33,10 @@ class NeighborLists {
   std::size_t memory_bytes() const;
 
  private:
+  template <bool periodic>
+  void build_blocks(const PointClusters& targets, const PointClusters& sources, float radius,
+                    const Eigen::Vector3f& period);
+
   static constexpr std::size_t clusters_per_block = 64;
   static constexpr std::size_t clusters_per_query = 8;  // consecutive clusters are close: one kd-tree query for all
   struct Range {

@@ -35,6 +35,11 @@ PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wa
   wall_pressure = static_cast<float>(wall_scale / gradient);
   wall_viscosity = static_cast<float>(viscous * wall.friction_factor * wall_scale);
   wall_softening = static_cast<float>(0.01 * wall.support * wall.support / 4);
+  for (int a = 0; a < 3; ++a) {
+    if (!s.periodic[a]) continue;
+    period[a] = static_cast<float>(s.domain.max[a] - s.domain.min[a]);
+    inverse_period[a] = 1 / period[a];
+  }
 }
 
 float PairCoefficients::pack_pressure(float compression) const {
@@ -85,6 +90,7 @@ struct Sums {
 struct SplatCoefficients {
   Float8 inverse_support, viscosity, softening, gx, gy, gz;
   Float8 wall_inverse_support, wall_pressure, wall_viscosity, wall_softening;
+  Float8 period[3], inverse_period[3];
 
   explicit SplatCoefficients(const PairCoefficients& c)
       : inverse_support(broadcast(c.inverse_support)),
@@ -96,8 +102,28 @@ struct SplatCoefficients {
         wall_inverse_support(broadcast(c.wall_inverse_support)),
         wall_pressure(broadcast(c.wall_pressure)),
         wall_viscosity(broadcast(c.wall_viscosity)),
-        wall_softening(broadcast(c.wall_softening)) {}
+        wall_softening(broadcast(c.wall_softening)) {
+    for (int a = 0; a < 3; ++a) {
+      period[a] = broadcast(c.period[a]);
+      inverse_period[a] = broadcast(c.inverse_period[a]);
+    }
+  }
 };
+
+// x_i - x_j; in a periodic box to the nearest image of j.
+struct Difference {
+  Float8 x, y, z;
+};
+template <bool periodic, typename Pack>
+inline Difference difference(const SplatCoefficients& c, const Targets& i, const Pack& j) {
+  Difference d{i.x - broadcast(j.x), i.y - broadcast(j.y), i.z - broadcast(j.z)};
+  if constexpr (periodic) {
+    d.x -= c.period[0] * round8(d.x * c.inverse_period[0]);
+    d.y -= c.period[1] * round8(d.y * c.inverse_period[1]);
+    d.z -= c.period[2] * round8(d.z * c.inverse_period[2]);
+  }
+  return d;
+}
 
 // Density difference that diffuses. Fluid at rest has a density gradient that must stay: the part of the difference
 // that hydrostatics explains is left out, as in [FDM*19, Eq. 9], but only where the density really differs in that
@@ -107,9 +133,9 @@ inline Float8 diffusing_difference(const Float8& difference, const Float8& hydro
   return difference - min(max(difference, min(hydrostatic, zero)), max(hydrostatic, zero));
 }
 
-template <typename Kernel, bool monaghan, bool continuity, bool with_xsph>
+template <typename Kernel, bool monaghan, bool continuity, bool with_xsph, bool periodic>
 inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidPack& j, Sums& sums) {
-  const Float8 dx = i.x - broadcast(j.x), dy = i.y - broadcast(j.y), dz = i.z - broadcast(j.z);
+  const auto [dx, dy, dz] = difference<periodic>(c, i, j);
   const Float8 ux = i.vx - broadcast(j.vx), uy = i.vy - broadcast(j.vy), uz = i.vz - broadcast(j.vz);
   const Float8 r2 = dx * dx + dy * dy + dz * dz;
   const Float8 q = sqrt(r2) * c.inverse_support;
@@ -142,9 +168,9 @@ inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidP
 }
 
 // A wall rests, pushes with the pressure of the fluid particle [AIA*12, Eq. 9] and resists shear.
-template <typename Kernel, bool monaghan>
+template <typename Kernel, bool monaghan, bool periodic>
 inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPack& b, Sums& sums) {
-  const Float8 dx = i.x - broadcast(b.x), dy = i.y - broadcast(b.y), dz = i.z - broadcast(b.z);
+  const auto [dx, dy, dz] = difference<periodic>(c, i, b);
   const Float8 r2 = dx * dx + dy * dy + dz * dz;
   sums.wall_distance2 = min(sums.wall_distance2, r2);
   const Float8 s = broadcast(b.volume) * Kernel::shape(sqrt(r2) * c.wall_inverse_support);
@@ -173,7 +199,7 @@ int piece_of(std::size_t clusters) {
   return static_cast<int>(1 + clusters / (10 * static_cast<std::size_t>(omp_get_max_threads())));
 }
 
-template <typename Kernel, bool monaghan, bool continuity, bool with_xsph>
+template <typename Kernel, bool monaghan, bool continuity, bool with_xsph, bool periodic>
 void run_forces(const PairCoefficients& coefficients, const PairData& data) {
   const SplatCoefficients c(coefficients);
   const PointClusters& clusters = *data.clusters;
@@ -184,10 +210,10 @@ void run_forces(const PairCoefficients& coefficients, const PairData& data) {
     const Targets targets(&data.fluid[first], count);
     Sums sums;
     for (const std::uint32_t j : data.fluid_lists->of_cluster(cluster)) {
-      add_fluid<Kernel, monaghan, continuity, with_xsph>(c, targets, data.fluid[j], sums);
+      add_fluid<Kernel, monaghan, continuity, with_xsph, periodic>(c, targets, data.fluid[j], sums);
     }
     for (const std::uint32_t b : data.wall_lists->of_cluster(cluster)) {
-      add_wall<Kernel, monaghan>(c, targets, data.walls[b], sums);
+      add_wall<Kernel, monaghan, periodic>(c, targets, data.walls[b], sums);
     }
     sums.add_friction(data.time_step);
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -204,7 +230,7 @@ void run_forces(const PairCoefficients& coefficients, const PairData& data) {
   }
 }
 
-template <typename Kernel>
+template <typename Kernel, bool periodic>
 void run_densities(const PairCoefficients& coefficients, const PairData& data) {
   const SplatCoefficients c(coefficients);
   const PointClusters& clusters = *data.clusters;
@@ -214,7 +240,7 @@ void run_densities(const PairCoefficients& coefficients, const PairData& data) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
     const Targets i(&data.fluid[first], count);
     const auto kernel = [&](const auto& j, const Float8& inverse_support) {
-      const Float8 dx = i.x - broadcast(j.x), dy = i.y - broadcast(j.y), dz = i.z - broadcast(j.z);
+      const auto [dx, dy, dz] = difference<periodic>(c, i, j);
       return Kernel::scaled_value(sqrt(dx * dx + dy * dy + dz * dz) * inverse_support);
     };
     Float8 sum{}, wall_sum{};
@@ -237,10 +263,17 @@ void with_bool(bool value, Function function) {
   value ? function(std::true_type{}) : function(std::false_type{});
 }
 
+bool is_periodic(const SolverSettings& settings) {
+  return settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
+}
+
 }  // namespace
 
 void sum_densities(const PairCoefficients& coefficients, const SolverSettings& settings, const PairData& data) {
-  with_kernel(settings.kernel, [&](auto kernel) { run_densities<decltype(kernel)>(coefficients, data); });
+  with_kernel(settings.kernel, [&](auto kernel) {
+    with_bool(is_periodic(settings),
+              [&](auto periodic) { run_densities<decltype(kernel), periodic.value>(coefficients, data); });
+  });
 }
 
 void compute_forces(const PairCoefficients& coefficients, const SolverSettings& settings, const PairData& data) {
@@ -248,7 +281,10 @@ void compute_forces(const PairCoefficients& coefficients, const SolverSettings& 
     with_bool(settings.viscosity_form == ViscosityForm::monaghan, [&](auto monaghan) {
       with_bool(settings.density_method == DensityMethod::continuity, [&](auto continuity) {
         with_bool(!data.shifts.empty(), [&](auto xsph) {
-          run_forces<decltype(kernel), monaghan.value, continuity.value, xsph.value>(coefficients, data);
+          with_bool(is_periodic(settings), [&](auto periodic) {
+            run_forces<decltype(kernel), monaghan.value, continuity.value, xsph.value, periodic.value>(coefficients,
+                                                                                                       data);
+          });
         });
       });
     });

@@ -33,6 +33,7 @@ struct PairCoefficients {
   float wall_pressure = 0;             ///< G_b R_b^3 / (V G)
   float wall_viscosity = 0;            ///< as viscosity, with G_b R_b^3 and the walls' friction factor
   float wall_softening = 0;
+  float period[3] = {}, inverse_period[3] = {};  ///< m, 1/m; 0 along axes that are not periodic
 };
 
 /// Result for one particle.

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "sph/periodic_box.h"
 #include "sph/triangle_mesh.h"
 
 namespace flowskin::sph {
@@ -53,5 +54,14 @@ class PointGrid {
   double cell_size_;
   std::unordered_map<std::uint64_t, std::vector<Vec3>> cells_;
 };
+
+/// Whether a point of the grid, or an image of it, lies nearer to p than `distance`.
+inline bool has_near_image(const PointGrid& grid, const Vec3& p, double distance, const PeriodicBox& periodic) {
+  bool found = false;
+  const Vec3 reach = Vec3::Constant(distance);
+  periodic.for_each_touching_image(p - reach, p + reach,
+                                   [&](const Vec3& shift) { found = found || grid.has_near(p + shift, distance); });
+  return found;
+}
 
 }  // namespace flowskin::sph

@@ -41,6 +41,23 @@ void check_settings(const SolverSettings& s) {
   require(s.skin >= 0 && s.skin <= 2, "skin", s.skin, "0 (automatic) to 2 spacings");
 }
 
+void check_domain(const SolverSettings& s) {
+  for (int a = 0; a < 3; ++a) {
+    const std::string axis(1, static_cast<char>('x' + a));
+    const double length = s.domain.max[a] - s.domain.min[a];
+    if (!std::isfinite(length) || length < 0) {
+      throw SettingsError("the domain's min corner must not be greater than its max corner along " + axis);
+    }
+    // From here on no particle meets two images of another one.
+    const double shortest = 2 * s.support_radius * s.spacing;
+    if (s.periodic[a] && length < shortest * (1 - 1e-9)) {
+      throw SettingsError("the domain is periodic along " + axis + ", but only " + number(length) +
+                          " m long; expected at least twice the support radius, " + number(shortest) +
+                          " m: a longer domain or a smaller spacing");
+    }
+  }
+}
+
 void check_mesh(const TriangleMesh& mesh, const std::string& name) {
   const int count = static_cast<int>(mesh.positions.size());
   for (const Vec3& p : mesh.positions) {
@@ -60,6 +77,7 @@ void check_mesh(const TriangleMesh& mesh, const std::string& name) {
 
 void check_setup(const SimulationSetup& setup) {
   check_settings(setup.settings);
+  check_domain(setup.settings);
   if (setup.bodies.empty() && setup.emitters.empty()) {
     throw SettingsError("nothing to simulate: give at least one fluid body or emitter");
   }

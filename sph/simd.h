@@ -52,6 +52,16 @@ inline Float8 sqrt(const Float8& a) {
 #endif
 }
 
+/// Nearest whole numbers; exact and odd (round8(-a) = -round8(a)) for |a| below 2^22.
+inline Float8 round8(const Float8& a) {
+#ifdef __AVX__
+  return _mm256_round_ps(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+#else
+  const Float8 shift = broadcast(12582912.0F);  // 1.5 * 2^23: what is added to it loses its fraction
+  return (a + shift) - shift;
+#endif
+}
+
 /// Bit k is set where lane k of a is below lane k of b.
 inline unsigned less_mask(const Float8& a, const Float8& b) {
 #ifdef __AVX__

@@ -45,7 +45,7 @@ FluidState Solver::state() const {
   state.densities.reserve(count);
   for (const std::uint32_t i : order) {
     state.ids.push_back(particles.ids[i]);
-    state.positions.push_back(particles.positions[i]);
+    state.positions.push_back(impl_->periodic().wrap(particles.positions[i]));
     state.velocities.push_back(particles.velocities[i]);
     state.rest_positions.push_back(particles.rest_positions[i]);
     state.densities.push_back(impl_->settings().rest_density * (1 + static_cast<double>(particles.compressions[i])));

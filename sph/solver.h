@@ -1,6 +1,7 @@
 // A weakly compressible SPH fluid: the public face of the solver.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -64,7 +65,12 @@ struct SolverSettings {
   double force_cfl = 0.25;         ///< dt <= force_cfl sqrt(h / |a|)
   double max_time_step = 1e9;      ///< s
   double skin = 0;                 ///< Skin of the Verlet lists, in spacings; 0: the recommended one.
-  Box domain;                      ///< Particles that leave it are removed and counted; an empty box: no limit.
+  /// Particles that leave it along an axis that is not periodic are removed and counted; no limit along axes where min
+  /// and max are the same.
+  Box domain;
+  /// Axes along which the domain is periodic: its opposite faces are one and the same, for fluid and walls. Walls
+  /// outside of it are cut off.
+  std::array<bool, 3> periodic{};
 };
 
 /// A shape filled with fluid at the start, sampled on a lattice of the solver's spacing.
@@ -107,7 +113,7 @@ struct SimulationSetup {
 struct FluidState {
   double time = 0;  ///< s
   std::vector<std::uint64_t> ids;
-  std::vector<Vec3> positions;   ///< m
+  std::vector<Vec3> positions;   ///< m; inside the domain along periodic axes
   std::vector<Vec3> velocities;  ///< m/s
   std::vector<Vec3>
       rest_positions;  ///< Place of the material in the first frame (m); emitted particles continue the jet backwards.

@@ -71,15 +71,19 @@ SolverSettings complete_settings(const SimulationSetup& setup, const std::vector
 
 }  // namespace
 
-SolverImpl::SolverImpl(SimulationSetup setup) : settings_((check_setup(setup), setup.settings)) {
+SolverImpl::SolverImpl(SimulationSetup setup)
+    : settings_((check_setup(setup), setup.settings)), periodic_(settings_.domain, settings_.periodic) {
   wall_kernel_ = make_wall_kernel(settings_);
-  boundary_ = sample_boundaries(setup.boundaries, settings_, wall_kernel_);
-  const std::vector<FluidPoint> points = fill_bodies(setup.bodies, settings_.spacing, boundary_.positions);
+  boundary_ = sample_boundaries(setup.boundaries, settings_, wall_kernel_, periodic_);
+  const std::vector<FluidPoint> points = fill_bodies(setup.bodies, settings_.spacing, boundary_.positions, periodic_);
   settings_ = complete_settings(setup, points);
   coefficients_ = PairCoefficients(settings_, wall_kernel_);
   mass_ = settings_.rest_density * std::pow(settings_.spacing, 3);
   smoothing_length_ = 0.5 * settings_.support_radius * settings_.spacing;
   origin_ = middle(points, boundary_.positions, setup.emitters);
+  for (int a = 0; a < 3; ++a) {
+    if (periodic_.along(a)) origin_[a] = 0.5 * (settings_.domain.min[a] + settings_.domain.max[a]);
+  }
   place_at_origin(boundary_, origin_, wall_kernel_);
   for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
     emitters_.emplace_back(setup.emitters[e], settings_.spacing, "emitter " + std::to_string(e + 1));
@@ -229,7 +233,22 @@ void SolverImpl::pour_emitters() {
 bool SolverImpl::outside_domain(const Vec3& p) const {
   const Box& box = settings_.domain;
   if (box.min == box.max) return false;
-  return (p.array() < box.min.array()).any() || (p.array() > box.max.array()).any();
+  for (int a = 0; a < 3; ++a) {
+    if (settings_.periodic[a] || box.min[a] == box.max[a]) continue;
+    if (p[a] < box.min[a] || p[a] > box.max[a]) return true;
+  }
+  return false;
+}
+
+void SolverImpl::wrap_particles() {
+#pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size()))
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    Vec3& position = particles_.positions[i];
+    position = periodic_.wrap(position);
+    const Eigen::Vector3f x = (position - origin_).cast<float>();
+    FluidPack& pack = particles_.packs[i];
+    pack.x = x.x(), pack.y = x.y(), pack.z = x.z();
+  }
 }
 
 void SolverImpl::remove_outside() {
@@ -270,6 +289,10 @@ bool SolverImpl::lists_outdated() const {
     }
   }
   const Eigen::Vector3f farthest = low.cwiseAbs().cwiseMax(high.cwiseAbs());
+  // Wrapped anew before the float coordinates get too large.
+  for (int a = 0; a < 3; ++a) {
+    if (periodic_.along(a) && farthest[a] > 0.5 * periodic_.period()[a]) return true;
+  }
   const bool walls_safe = boundary_.positions.empty() || farthest.norm() < skin;
   if (walls_safe && (high - low).norm() < skin) return false;
   // The box of displacements is too coarse to tell: look at each.
@@ -292,6 +315,7 @@ bool SolverImpl::lists_outdated() const {
 void SolverImpl::rebuild_lists() {
   const Stopwatch watch(statistics_.seconds_neighbors);
   if (some_outside_) remove_outside();
+  if (periodic_.any()) wrap_particles();
   const std::span<const FluidPack> packs = particles_.packs;
   if (particles_changed_ || ++builds_since_sort_ >= builds_per_sort) {
     curve_.compute(packs, static_cast<float>(settings_.spacing), particles_.scratch());
@@ -306,9 +330,10 @@ void SolverImpl::rebuild_lists() {
 void SolverImpl::build_lists(const PointView& places) {
   clusters_.assign(places, static_cast<float>(cluster_extent * settings_.spacing));
   const auto radius = static_cast<float>((settings_.support_radius + settings_.skin) * settings_.spacing);
-  fluid_lists_.build(clusters_, clusters_, radius);
+  const Eigen::Vector3f period = periodic_.period().cast<float>();
+  fluid_lists_.build(clusters_, clusters_, radius, period);
   const auto wall_reach = static_cast<float>(wall_kernel_.support + settings_.skin * settings_.spacing);
-  wall_lists_.build(clusters_, boundary_.clusters, wall_reach);
+  wall_lists_.build(clusters_, boundary_.clusters, wall_reach, period);
   collect_wall_triangles();
 }
 

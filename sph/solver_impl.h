@@ -11,6 +11,7 @@
 #include "sph/neighbor_lists.h"
 #include "sph/pair_forces.h"
 #include "sph/particle_arrays.h"
+#include "sph/periodic_box.h"
 #include "sph/solver.h"
 
 namespace flowskin::sph {
@@ -27,6 +28,7 @@ class SolverImpl {
   const BoundaryParticles& boundary() const { return boundary_; }
   const SolverSettings& settings() const { return settings_; }
   const SolverStatistics& statistics() const { return statistics_; }
+  const PeriodicBox& periodic() const { return periodic_; }
   double particle_mass() const { return mass_; }
   std::size_t memory_bytes() const;
 
@@ -57,6 +59,7 @@ class SolverImpl {
   void pour_emitters();
   bool outside_domain(const Vec3& p) const;
   void remove_outside();
+  void wrap_particles();
   /// Whether some pair may have come into reach that is not in the lists.
   bool lists_outdated() const;
   void rebuild_lists();
@@ -70,6 +73,7 @@ class SolverImpl {
   const JetEmitter* nozzle_around(const Vec3& p) const;
 
   SolverSettings settings_;
+  PeriodicBox periodic_;
   double mass_ = 0, smoothing_length_ = 0;
   double time_ = 0;
   Vec3 origin_ = Vec3::Zero();  // of the float coordinates

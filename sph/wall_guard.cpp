@@ -17,15 +17,20 @@ std::array<std::int64_t, 3> cell_of(const Vec3& p, const Vec3& origin, double ce
 
 }  // namespace
 
-WallGuard::WallGuard(const std::vector<const TriangleMesh*>& meshes, double cell_size) : cell_size_(cell_size) {
+WallGuard::WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, const PeriodicBox& periodic)
+    : cell_size_(cell_size) {
   Vec3 low = Vec3::Constant(1e300);
-  for (const TriangleMesh* mesh : meshes) {
-    for (const auto& t : mesh->triangles) {
-      const Vec3 &a = mesh->positions[t[0]], &b = mesh->positions[t[1]], &c = mesh->positions[t[2]];
+  const Vec3 margin = Vec3::Constant(2 * cell_size);
+  for (const TriangleMesh& mesh : meshes) {
+    for (const auto& t : mesh.triangles) {
+      const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
       const Vec3 normal = (b - a).cross(c - a);
-      low = low.cwiseMin(a).cwiseMin(b).cwiseMin(c);
-      if (normal.norm() > 0)
-        triangles_.push_back({a, b, c, normal.normalized()});  // without area: its edges belong to others
+      if (normal.norm() == 0) continue;  // its edges belong to others
+      const Vec3 lowest = a.cwiseMin(b).cwiseMin(c), highest = a.cwiseMax(b).cwiseMax(c);
+      periodic.for_each_touching_image(lowest - margin, highest + margin, [&](const Vec3& shift) {
+        low = low.cwiseMin(lowest + shift);
+        triangles_.push_back({a + shift, b + shift, c + shift, normal.normalized()});
+      });
     }
   }
   if (triangles_.empty()) return;

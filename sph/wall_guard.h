@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sph/periodic_box.h"
 #include "sph/triangle_mesh.h"
 
 namespace flowskin::sph {
@@ -13,7 +14,8 @@ class WallGuard {
  public:
   WallGuard() = default;
   /// @param cell_size edge of the grid's cells (m); about two spacings
-  WallGuard(const std::vector<const TriangleMesh*>& meshes, double cell_size);
+  /// @param periodic walls are entered with their images that come within two cells of the box
+  WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, const PeriodicBox& periodic = {});
 
   /// Replaces `found` by the triangles that may touch the box, in ascending order.
   void query(const Vec3& box_min, const Vec3& box_max, std::vector<std::uint32_t>& found) const;

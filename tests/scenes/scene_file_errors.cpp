@@ -154,7 +154,15 @@ TEST(SceneFileErrors, Contradictions) {
           R"({"particles": {"source": "prescribed", "spacing": 0.1, "positions": [[0,0,0]], "motion": {"type": "hole", "axis": [0, 0, 0]}}})"),
       HasSubstr("particles.motion.axis is zero"));
   EXPECT_THAT(error_of(small_scene(R"("simulation": {"domain": {"min": [0,0,0], "max": [1,-1,1]}})")),
-              HasSubstr("simulation.domain.min must be smaller"));
+              HasSubstr("simulation.domain.min must not be greater"));
+  EXPECT_THAT(error_of(small_scene(R"("simulation": {"periodic": [true, false]})")),
+              HasSubstr("simulation.periodic is a list; expected 3 times true or false"));
+  EXPECT_THAT(error_of(small_scene(R"("simulation": {"periodic": [true, false, false]},
+                                      "tracking": {"enabled": false})")),
+              HasSubstr("simulation.periodic is true for x, where simulation.domain is 0 m long"));
+  EXPECT_THAT(
+      error_of(small_scene(R"("simulation": {"domain": {"max": [50, 0, 0]}, "periodic": [true, false, false]})")),
+      HasSubstr("set tracking.enabled to false"));
   EXPECT_THAT(error_of(small_scene(R"("render": {"camera": {"position": [1,1,1], "look_at": [1,1,1]}})")),
               AllOf(StartsWith("test.json:4:46"), HasSubstr("same point")));
   EXPECT_THAT(error_of(small_scene(R"("render": {"camera": {"position": [0,5,0], "look_at": [0,1,0]}})")),

@@ -128,7 +128,7 @@ std::vector<std::uint32_t> all_triangles(const WallGuard& guard) {
 
 TEST(WallGuard, EveryPathOutOfAClosedMeshCrosses) {
   const TriangleMesh ball = sphere(Vec3::Zero(), 0.5, 12), box = closed_box({2, -0.5, -0.5}, {3, 0.5, 0.5});
-  const WallGuard guard({&ball, &box}, 0.1);
+  const WallGuard guard({ball, box}, 0.1);
   const auto all = all_triangles(guard);
   Random random(11);
   for (int k = 0; k < 5000; ++k) {
@@ -152,7 +152,7 @@ TEST(WallGuard, EveryPathOutOfAClosedMeshCrosses) {
 
 TEST(WallGuard, GridFindsEveryTriangleNearby) {
   const TriangleMesh ball = sphere(Vec3(3, 1, -2), 0.5, 10);
-  const WallGuard guard({&ball}, 0.13);
+  const WallGuard guard({ball}, 0.13);
   const auto all = all_triangles(guard);
   Random random(12);
   std::vector<std::uint32_t> found;
