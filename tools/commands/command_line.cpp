@@ -34,6 +34,7 @@ struct Choice {
   TrackOptions track;
   RenderOptions render;
   PaperOptions paper;
+  ValidateOptions validate;
   bool no_pictures = false, no_video = false;
   std::vector<std::filesystem::path> info_files;
   bool scene_defaults = false, scene_keys = false, methods_table = false;
@@ -143,6 +144,25 @@ CLI::App* add_paper(CLI::App& app, Choice& choice) {
   return paper;
 }
 
+CLI::App* add_validate(CLI::App& app, Choice& choice) {
+  ValidateOptions& options = choice.validate;
+  CLI::App* validate = app.add_subcommand(
+      "validate", "Check the solver against theory and experiment: table, plots, verdicts (docs/validation.md)");
+  validate->add_option("names", options.names, "Cases (default: all); see --list");
+  validate->add_option("--out", options.out, "Folder of the results")->capture_default_str();
+  validate
+      ->add_option("--resolution", options.resolution,
+                   "Factor on the particles along each length; the tolerances are meant for 1")
+      ->check(CLI::Range(0.25, 8.0))
+      ->capture_default_str();
+  validate->add_option("--threads", options.threads, "Threads (default: all); results do not depend on it")
+      ->check(CLI::Range(1, kMaxThreads));
+  validate->add_flag("--quick", options.quick, "Without the long cases");
+  validate->add_flag("--list", options.list, "Only say which cases there are");
+  validate->add_flag("--quiet", options.quiet, "The table only");
+  return validate;
+}
+
 int run_choice(int argc, const char* const* argv) {
   CLI::App app{
       "A viscous SPH fluid simulator whose surface is a tracked mesh: textures flow with the fluid.\n"
@@ -161,6 +181,7 @@ int run_choice(int argc, const char* const* argv) {
   CLI::App* track = add_track(app, choice);
   CLI::App* render = add_render(app, choice);
   CLI::App* paper = add_paper(app, choice);
+  CLI::App* validate = add_validate(app, choice);
   CLI::App* info = app.add_subcommand("info", "Say what is in a mesh, particle or scene file, and whether it is sound");
   info->add_option("files", choice.info_files, "OBJ, PLY, particle (CSV, VTK, VTP) or scene files")->required();
   CLI::App* methods = app.add_subcommand("methods", "List the velocity methods and when to use which");
@@ -197,6 +218,7 @@ int run_choice(int argc, const char* const* argv) {
     return render_command(choice.render);
   }
   if (*paper) return paper_command(choice.paper);
+  if (*validate) return validate_command(choice.validate);
   if (*info) return info_command(choice.info_files);
   if (*methods) return methods_command(choice.methods_table);
   return scene_command(choice.scene_defaults ? "defaults" : "keys");

@@ -9,6 +9,7 @@
 #include "scenes/scene.h"
 #include "tools/experiments/paper_run.h"
 #include "tools/pipeline/run_options.h"
+#include "tools/validation/validation_run.h"
 
 namespace flowskin::tools {
 
@@ -47,6 +48,8 @@ int info_command(const std::vector<std::filesystem::path>& files);
 /// `table`: their errors on the test flows as well.
 int methods_command(bool table);
 int paper_command(const PaperOptions& options);
+/// 1 where some figure lies outside its limits.
+int validate_command(const ValidateOptions& options);
 /// `what`: "defaults" or "keys" (as a Markdown table).
 int scene_command(const std::string& what);
 
