@@ -178,6 +178,12 @@ Table<Scene> solver_keys() {
       {{"summation", sph::DensityMethod::summation}, {"continuity", sph::DensityMethod::continuity}});
   const auto viscosity = choice_of<sph::ViscosityForm>(
       {{"monaghan", sph::ViscosityForm::monaghan}, {"morris", sph::ViscosityForm::morris}});
+  const auto viscosity_solver = choice_of<sph::ViscositySolver>({{"auto", sph::ViscositySolver::automatic},
+                                                                 {"explicit", sph::ViscositySolver::explicit_steps},
+                                                                 {"implicit", sph::ViscositySolver::implicit}});
+  const auto not_explicit = [](const S& s) {
+    return s.solver.viscosity_solver != sph::ViscositySolver::explicit_steps;
+  };
   Table<S> table = {
       key<S>("fluid.density", at(solver, &Settings::rest_density), number(above(0, 1e5)), "kg/m^3", "Density at rest."),
       key<S>("fluid.viscosity", at(solver, &Settings::viscosity), number(at_least(0, 1e4)), "m^2/s",
@@ -194,6 +200,16 @@ Table<Scene> solver_keys() {
              "Share of XSPH smoothing in the velocity that moves particles."),
       key<S>("simulation.viscosity_form", at(solver, &Settings::viscosity_form), viscosity, "",
              "Discrete form of the viscous force; monaghan keeps angular momentum."),
+      key<S>("simulation.viscosity_solver", at(solver, &Settings::viscosity_solver), viscosity_solver, "",
+             "explicit: viscosity limits the time step; implicit: a linear system every step instead; auto: implicit "
+             "where the viscous limit is below a quarter of the acoustic one.")
+          .selecting(),
+      key<S>("simulation.viscosity_tolerance", at(solver, &Settings::viscosity_tolerance), number(at_least(1e-6, 0.1)),
+             "", "Implicit viscosity: error of the velocities over their change in the step.")
+          .only_for("simulation.viscosity_solver \"auto\" or \"implicit\"", not_explicit),
+      key<S>("simulation.viscosity_max_iterations", at(solver, &Settings::viscosity_max_iterations),
+             integer(1, 1000000), "", "Implicit viscosity: iterations after which the run stops with a message.")
+          .only_for("simulation.viscosity_solver \"auto\" or \"implicit\"", not_explicit),
       key<S>("simulation.density_method", at(solver, &Settings::density_method), density, "",
              "Density by summation over the neighbours (cannot drift) or from the continuity equation.")
           .selecting(),

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 #include "sph/simd.h"
 #include "sph/solver.h"
@@ -81,6 +82,12 @@ template <typename Function>
 decltype(auto) with_kernel(KernelType type, Function&& function) {
   if (type == KernelType::cubic_spline) return function(CubicSpline{});
   return function(WendlandC2{});
+}
+
+/// Calls `function` with std::true_type or std::false_type, so that a loop can be compiled for both.
+template <typename Function>
+void with_bool(bool value, Function function) {
+  value ? function(std::true_type{}) : function(std::false_type{});
 }
 
 /// W(r) of either kernel, in 1/m^3.

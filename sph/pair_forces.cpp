@@ -3,22 +3,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <type_traits>
 
 #include "sph/equation_of_state.h"
 #include "sph/kernels.h"
+#include "sph/minimum_image.h"
 #include "sph/parallel.h"
+#include "sph/viscous_pairs.h"
 
 namespace flowskin::sph {
 
-PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wall) {
+PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wall, bool variable_viscosity) {
   const auto gradient_scale = [&](double support) {
     return with_kernel(s.kernel, [&](auto kernel) { return decltype(kernel)::gradient_scale(support); });
   };
   const double support = s.support_radius * s.spacing, h = support / 2;
   const double cell = s.spacing * s.spacing * s.spacing, volume = cell / lattice_kernel_sum(s);
   const double gradient = volume * gradient_scale(support);
-  const double viscous = (s.viscosity_form == ViscosityForm::monaghan ? 10 : 2) * s.viscosity;
+  const double viscous =
+      (s.viscosity_form == ViscosityForm::monaghan ? 10 : 2) * (variable_viscosity ? 1 : s.viscosity);
   const double c = s.speed_of_sound;
   inverse_support = static_cast<float>(1 / support);
   kernel_scale = static_cast<float>(volume / (support * support * support));
@@ -88,42 +90,21 @@ struct Sums {
 
 // Constants in all lanes.
 struct SplatCoefficients {
-  Float8 inverse_support, viscosity, softening, gx, gy, gz;
-  Float8 wall_inverse_support, wall_pressure, wall_viscosity, wall_softening;
-  Float8 period[3], inverse_period[3];
+  Float8 inverse_support, gx, gy, gz;
+  Float8 wall_inverse_support, wall_pressure;
+  ViscousPairs viscous;
+  MinimumImage image;
 
   explicit SplatCoefficients(const PairCoefficients& c)
       : inverse_support(broadcast(c.inverse_support)),
-        viscosity(broadcast(c.viscosity)),
-        softening(broadcast(c.softening)),
         gx(broadcast(c.compression_gradient[0])),
         gy(broadcast(c.compression_gradient[1])),
         gz(broadcast(c.compression_gradient[2])),
         wall_inverse_support(broadcast(c.wall_inverse_support)),
         wall_pressure(broadcast(c.wall_pressure)),
-        wall_viscosity(broadcast(c.wall_viscosity)),
-        wall_softening(broadcast(c.wall_softening)) {
-    for (int a = 0; a < 3; ++a) {
-      period[a] = broadcast(c.period[a]);
-      inverse_period[a] = broadcast(c.inverse_period[a]);
-    }
-  }
+        viscous(c),
+        image(c) {}
 };
-
-// x_i - x_j; in a periodic box to the nearest image of j.
-struct Difference {
-  Float8 x, y, z;
-};
-template <bool periodic, typename Pack>
-inline Difference difference(const SplatCoefficients& c, const Targets& i, const Pack& j) {
-  Difference d{i.x - broadcast(j.x), i.y - broadcast(j.y), i.z - broadcast(j.z)};
-  if constexpr (periodic) {
-    d.x -= c.period[0] * round8(d.x * c.inverse_period[0]);
-    d.y -= c.period[1] * round8(d.y * c.inverse_period[1]);
-    d.z -= c.period[2] * round8(d.z * c.inverse_period[2]);
-  }
-  return d;
-}
 
 // Density difference that diffuses. Fluid at rest has a density gradient that must stay: the part of the difference
 // that hydrostatics explains is left out, as in [FDM*19, Eq. 9], but only where the density really differs in that
@@ -133,9 +114,19 @@ inline Float8 diffusing_difference(const Float8& difference, const Float8& hydro
   return difference - min(max(difference, min(hydrostatic, zero)), max(hydrostatic, zero));
 }
 
-template <typename Kernel, bool monaghan, bool continuity, bool with_xsph, bool periodic>
-inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidPack& j, Sums& sums) {
-  const auto [dx, dy, dz] = difference<periodic>(c, i, j);
+// The viscous force of the loop: none (the implicit step adds it), or the form, with one viscosity for all or one each.
+struct Inviscid {
+  static constexpr bool viscous = false, monaghan = true, variable = false;
+};
+template <bool monaghan_form, bool with_variable>
+struct Viscous {
+  static constexpr bool viscous = true, monaghan = monaghan_form, variable = with_variable;
+};
+
+template <typename Kernel, typename Viscosity, bool continuity, bool with_xsph, bool periodic>
+inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidPack& j, const Float8& own_viscosity,
+                      float viscosity, Sums& sums) {
+  const auto [dx, dy, dz] = c.image.difference<periodic>(i.x, i.y, i.z, j);
   const Float8 ux = i.vx - broadcast(j.vx), uy = i.vy - broadcast(j.vy), uz = i.vz - broadcast(j.vz);
   const Float8 r2 = dx * dx + dy * dy + dz * dz;
   const Float8 q = sqrt(r2) * c.inverse_support;
@@ -147,14 +138,17 @@ inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidP
     sums.diffusion += s * diffusing_difference(broadcast(j.compression) - i.compression, hydrostatic);
   }
   const Float8 pressure = i.pressure + broadcast(j.pressure);
-  const Float8 friction = c.viscosity / (r2 + c.softening);
-  if constexpr (monaghan) {
-    const Float8 f = s * (pressure - friction * approach);
+  if constexpr (Viscosity::monaghan) {
+    Float8 f = s * pressure;
+    if constexpr (Viscosity::viscous) {
+      f -= c.viscous.fluid<Viscosity::variable>(s, r2, own_viscosity, viscosity) * approach;
+    }
     sums.ax += f * dx;
     sums.ay += f * dy;
     sums.az += f * dz;
   } else {
-    const Float8 f = s * pressure, g = s * friction * r2;
+    const Float8 f = s * pressure;
+    const Float8 g = c.viscous.fluid<Viscosity::variable>(s, r2, own_viscosity, viscosity) * r2;
     sums.ax += f * dx - g * ux;
     sums.ay += f * dy - g * uy;
     sums.az += f * dz - g * uz;
@@ -168,9 +162,10 @@ inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidP
 }
 
 // A wall rests, pushes with the pressure of the fluid particle [AIA*12, Eq. 9] and resists shear.
-template <typename Kernel, bool monaghan, bool periodic>
-inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPack& b, Sums& sums) {
-  const auto [dx, dy, dz] = difference<periodic>(c, i, b);
+template <typename Kernel, typename Viscosity, bool periodic>
+inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPack& b, const Float8& own_viscosity,
+                     Sums& sums) {
+  const auto [dx, dy, dz] = c.image.difference<periodic>(i.x, i.y, i.z, b);
   const Float8 r2 = dx * dx + dy * dy + dz * dz;
   sums.wall_distance2 = min(sums.wall_distance2, r2);
   const Float8 s = broadcast(b.volume) * Kernel::shape(sqrt(r2) * c.wall_inverse_support);
@@ -180,9 +175,10 @@ inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPac
   sums.ax += pressure * dx;
   sums.ay += pressure * dy;
   sums.az += pressure * dz;
-  const Float8 friction = s * broadcast(b.stick) * c.wall_viscosity / (r2 + c.wall_softening);
+  if constexpr (!Viscosity::viscous) return;
+  const Float8 friction = c.viscous.wall<Viscosity::variable>(s * broadcast(b.stick), r2, own_viscosity);
   sums.friction_rate += friction * r2;
-  if constexpr (monaghan) {
+  if constexpr (Viscosity::monaghan) {
     sums.fx -= friction * approach * dx;
     sums.fy -= friction * approach * dy;
     sums.fz -= friction * approach * dz;
@@ -199,7 +195,7 @@ int piece_of(std::size_t clusters) {
   return static_cast<int>(1 + clusters / (10 * static_cast<std::size_t>(omp_get_max_threads())));
 }
 
-template <typename Kernel, bool monaghan, bool continuity, bool with_xsph, bool periodic>
+template <typename Kernel, typename Viscosity, bool continuity, bool with_xsph, bool periodic>
 void run_forces(const PairCoefficients& coefficients, const PairData& data) {
   const SplatCoefficients c(coefficients);
   const PointClusters& clusters = *data.clusters;
@@ -209,13 +205,16 @@ void run_forces(const PairCoefficients& coefficients, const PairData& data) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
     const Targets targets(&data.fluid[first], count);
     Sums sums;
+    constexpr bool variable = Viscosity::variable;
+    const Float8 viscosity = variable ? load_viscosities(&data.viscosities[first], count) : Float8{};
     for (const std::uint32_t j : data.fluid_lists->of_cluster(cluster)) {
-      add_fluid<Kernel, monaghan, continuity, with_xsph, periodic>(c, targets, data.fluid[j], sums);
+      const float other = variable ? data.viscosities[j] : 0.0F;
+      add_fluid<Kernel, Viscosity, continuity, with_xsph, periodic>(c, targets, data.fluid[j], viscosity, other, sums);
     }
     for (const std::uint32_t b : data.wall_lists->of_cluster(cluster)) {
-      add_wall<Kernel, monaghan, periodic>(c, targets, data.walls[b], sums);
+      add_wall<Kernel, Viscosity, periodic>(c, targets, data.walls[b], viscosity, sums);
     }
-    sums.add_friction(data.time_step);
+    if constexpr (Viscosity::viscous) sums.add_friction(data.time_step);
     for (std::uint32_t k = 0; k < count; ++k) {
       // Continuity: d(rho / rho_0)/dt = V sum v_ij . grad W [Monaghan 1992, Eq. 2.17], plus the diffusion.
       const float rate = coefficients.diffusion * sums.diffusion[k] -
@@ -240,7 +239,7 @@ void run_densities(const PairCoefficients& coefficients, const PairData& data) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
     const Targets i(&data.fluid[first], count);
     const auto kernel = [&](const auto& j, const Float8& inverse_support) {
-      const auto [dx, dy, dz] = difference<periodic>(c, i, j);
+      const auto [dx, dy, dz] = c.image.difference<periodic>(i.x, i.y, i.z, j);
       return Kernel::scaled_value(sqrt(dx * dx + dy * dy + dz * dz) * inverse_support);
     };
     Float8 sum{}, wall_sum{};
@@ -259,12 +258,11 @@ void run_densities(const PairCoefficients& coefficients, const PairData& data) {
 }
 
 template <typename Function>
-void with_bool(bool value, Function function) {
-  value ? function(std::true_type{}) : function(std::false_type{});
-}
-
-bool is_periodic(const SolverSettings& settings) {
-  return settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
+void with_viscosity(const PairData& data, const SolverSettings& settings, Function function) {
+  if (!data.viscous) return function(Inviscid{});
+  // Several fluids come with Monaghan's form only: every combination costs compile time.
+  if (settings.viscosity_form == ViscosityForm::morris) return function(Viscous<false, false>{});
+  with_bool(!data.viscosities.empty(), [&](auto variable) { function(Viscous<true, variable.value>{}); });
 }
 
 }  // namespace
@@ -278,12 +276,12 @@ void sum_densities(const PairCoefficients& coefficients, const SolverSettings& s
 
 void compute_forces(const PairCoefficients& coefficients, const SolverSettings& settings, const PairData& data) {
   with_kernel(settings.kernel, [&](auto kernel) {
-    with_bool(settings.viscosity_form == ViscosityForm::monaghan, [&](auto monaghan) {
+    with_viscosity(data, settings, [&](auto viscosity) {
       with_bool(settings.density_method == DensityMethod::continuity, [&](auto continuity) {
         with_bool(!data.shifts.empty(), [&](auto xsph) {
           with_bool(is_periodic(settings), [&](auto periodic) {
-            run_forces<decltype(kernel), monaghan.value, continuity.value, xsph.value, periodic.value>(coefficients,
-                                                                                                       data);
+            run_forces<decltype(kernel), decltype(viscosity), continuity.value, xsph.value, periodic.value>(
+                coefficients, data);
           });
         });
       });

@@ -14,7 +14,8 @@ namespace flowskin::sph {
 /// sum of the lattice, G the kernel's gradient scale (kernels.h); an index b means the kernel of the walls.
 struct PairCoefficients {
   PairCoefficients() = default;
-  PairCoefficients(const SolverSettings& settings, const WallKernel& wall);
+  /// @param variable_viscosity the viscous coefficients are those of 1 m^2/s, to be multiplied by that of each pair
+  PairCoefficients(const SolverSettings& settings, const WallKernel& wall, bool variable_viscosity = false);
 
   /// Pressure entry of a FluidPack: V G p rho_0 / rho^2 with p clamped at zero.
   float pack_pressure(float compression) const;
@@ -54,7 +55,13 @@ struct PairData {
   std::span<ParticleRates> rates;     ///< out
   std::span<float> wall_distances;    ///< out: distance to the nearest boundary particle in the lists, else 1e9 (m)
   std::span<Eigen::Vector3f> shifts;  ///< out: XSPH velocity change (m/s); empty where XSPH is off
+  bool viscous = true;                ///< false: no viscosity and friction; ImplicitViscosity adds them
+  std::span<const float> viscosities = {};  ///< Of each particle (m^2/s); empty: all the same
 };
+
+inline bool is_periodic(const SolverSettings& settings) {
+  return settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
+}
 
 /// Sets compression and pressure of all packs by summation over the neighbours.
 void sum_densities(const PairCoefficients& coefficients, const SolverSettings& settings, const PairData& data);

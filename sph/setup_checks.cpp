@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace flowskin::sph {
 
 namespace {
 
+/// An implicit step costs about as much as this many explicit ones (docs/viscosity.md).
+constexpr double implicit_step_cost = 4;
 constexpr double recommended_skin = 0.3;  // in spacings; measured in tests/benchmarks/sph_benchmark.cpp
 
 std::string number(double value) {
@@ -38,6 +41,9 @@ void check_settings(const SolverSettings& s) {
   require(positive(s.viscous_cfl), "viscous_cfl", s.viscous_cfl, "a number greater than 0");
   require(positive(s.force_cfl), "force_cfl", s.force_cfl, "a number greater than 0");
   require(positive(s.max_time_step), "max_time_step", s.max_time_step, "a time greater than 0 s");
+  require(s.viscosity_tolerance >= 1e-6 && s.viscosity_tolerance <= 0.1, "viscosity_tolerance", s.viscosity_tolerance,
+          "1e-6 to 0.1");
+  require(s.viscosity_max_iterations >= 1, "viscosity_max_iterations", s.viscosity_max_iterations, "1 or more");
   require(s.skin >= 0 && s.skin <= 2, "skin", s.skin, "0 (automatic) to 2 spacings");
 }
 
@@ -125,7 +131,20 @@ SolverSettings with_automatic_values(const SimulationSetup& setup, const Box& fl
     if (s.max_speed == 0) s.max_speed = 50 * s.spacing;
   }
   if (s.speed_of_sound == 0) s.speed_of_sound = 10 * s.max_speed;
+  if (s.viscosity_solver == ViscositySolver::automatic) {
+    const double h = s.support_radius * s.spacing / 2;
+    const double longest = std::min(s.acoustic_cfl * h / s.speed_of_sound, s.max_time_step);
+    s.viscosity_solver = implicit_step_cost * viscous_step_limit(s, s.viscosity) < longest
+                             ? ViscositySolver::implicit
+                             : ViscositySolver::explicit_steps;
+  }
   return s;
+}
+
+double viscous_step_limit(const SolverSettings& s, double viscosity) {
+  if (viscosity <= 0) return std::numeric_limits<double>::infinity();
+  const double h = s.support_radius * s.spacing / 2;
+  return s.viscous_cfl * (s.viscosity_form == ViscosityForm::monaghan ? 0.5 : 1.0) * h * h / viscosity;
 }
 
 }  // namespace flowskin::sph

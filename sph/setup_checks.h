@@ -14,4 +14,7 @@ void check_setup(const SimulationSetup& setup);
 /// @param fluid_box,fluid_speed box (m) and greatest speed (m/s) of the fluid bodies' particles
 SolverSettings with_automatic_values(const SimulationSetup& setup, const Box& fluid_box, double fluid_speed);
 
+/// Longest step at which the explicit viscous force is stable (s); infinite without viscosity.
+double viscous_step_limit(const SolverSettings& settings, double viscosity);
+
 }  // namespace flowskin::sph

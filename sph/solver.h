@@ -35,6 +35,10 @@ enum class DensityMethod { summation, continuity };
 ///   Slows free bodies of fluid that turn.
 enum class ViscosityForm { monaghan, morris };
 
+/// How the viscous force is integrated in time: with the other forces (explicit_steps: the step is limited by
+/// viscous_cfl h^2 / nu), by a linear system every step (implicit: no such limit), or the cheaper of the two.
+enum class ViscositySolver { automatic, explicit_steps, implicit };
+
 /// A setting is impossible (negative spacing, a fluid body without particles, ...); the message says which and why.
 struct SettingsError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
@@ -54,7 +58,10 @@ struct SolverSettings {
   double rest_density = 1000;  ///< kg/m^3
   double viscosity = 1e-6;     ///< Kinematic viscosity (m^2/s), laminar.
   ViscosityForm viscosity_form = ViscosityForm::monaghan;
-  Vec3 gravity{0, -9.81, 0};  ///< m/s^2
+  ViscositySolver viscosity_solver = ViscositySolver::automatic;
+  double viscosity_tolerance = 1e-3;    ///< Implicit: error of the velocities over their change in the step.
+  int viscosity_max_iterations = 1000;  ///< Implicit: more mean failure.
+  Vec3 gravity{0, -9.81, 0};            ///< m/s^2
   double max_speed = 0;       ///< Fastest flow expected (m/s); 0: from heights, gravity and initial velocities.
   double speed_of_sound = 0;  ///< m/s; 0: ten times the fastest flow expected, so that density stays within 1 %.
   double xsph = 0;            ///< Share of XSPH smoothing in the velocity that moves particles, 0 to 1.
@@ -139,14 +146,17 @@ struct SolverStatistics {
   std::uint64_t wall_crossings = 0;  ///< Particle paths that would have passed a wall and were put back.
   std::uint64_t emitted = 0;
   std::uint64_t steps_limited_by_acoustic = 0, steps_limited_by_viscous = 0, steps_limited_by_force = 0;
+  std::uint64_t viscosity_iterations = 0;  ///< Of the implicit viscosity, in all steps.
+  double viscosity_tolerance = 0;          ///< Residual that the last implicit step asked for (m/s, root mean square).
   TimeStepReport last_step;
-  double seconds_neighbors = 0, seconds_forces = 0, seconds_integration = 0;
+  double seconds_neighbors = 0, seconds_forces = 0, seconds_viscosity = 0, seconds_integration = 0;
 
   template <class Archive>
   void visit(Archive& archive) {
     archive(steps, list_rebuilds, left_domain, wall_crossings, emitted);
     archive(steps_limited_by_acoustic, steps_limited_by_viscous, steps_limited_by_force, last_step);
-    archive(seconds_neighbors, seconds_forces, seconds_integration);
+    archive(viscosity_iterations, viscosity_tolerance);
+    archive(seconds_neighbors, seconds_forces, seconds_viscosity, seconds_integration);
   }
 };
 

@@ -123,6 +123,7 @@ bool SolverImpl::advance_towards(double time, const std::function<bool()>& stop)
 double SolverImpl::step(double limit) {
   statistics_.last_step = choose_step(limit);
   const double dt = statistics_.last_step.step;
+  if (is_implicit()) kick_implicitly(dt);
   kick_and_drift(dt);
   time_ += dt;
   pour_emitters();
@@ -142,8 +143,7 @@ TimeStepReport SolverImpl::choose_step(double limit) const {
   const double h = smoothing_length_;
   TimeStepReport report;
   report.acoustic = settings_.acoustic_cfl * h / (settings_.speed_of_sound + greatest_speed_);
-  const double viscous_cfl = settings_.viscous_cfl * (settings_.viscosity_form == ViscosityForm::monaghan ? 0.5 : 1.0);
-  report.viscous = settings_.viscosity > 0 ? viscous_cfl * h * h / settings_.viscosity : infinity;
+  report.viscous = is_implicit() ? infinity : viscous_step_limit(settings_, settings_.viscosity);
   report.force = greatest_acceleration_ > 0 ? settings_.force_cfl * std::sqrt(h / greatest_acceleration_) : infinity;
   report.step = infinity;
   const auto apply = [&](double value, const char* name) {
@@ -180,7 +180,7 @@ void SolverImpl::drift_particle(std::size_t i, double dt, const std::vector<std:
                                 std::uint64_t& crossings) {
   const ParticleRates& rate = particles_.rates[i];
   Vec3& velocity = particles_.velocities[i];
-  velocity += 0.5 * dt * (Vec3(rate.ax, rate.ay, rate.az) + settings_.gravity);
+  if (!is_implicit()) velocity += 0.5 * dt * (Vec3(rate.ax, rate.ay, rate.az) + settings_.gravity);
   if (const JetEmitter* emitter = nozzle_around(particles_.positions[i])) velocity = emitter->velocity();
   Vec3 motion = dt * velocity;
   if (!particles_.shifts.empty()) motion += dt * particles_.shifts[i].cast<double>();
@@ -196,6 +196,31 @@ void SolverImpl::drift_particle(std::size_t i, double dt, const std::vector<std:
     }
   }
   particles_.positions[i] = target;
+}
+
+void SolverImpl::kick_implicitly(double dt) {
+  const Stopwatch watch(statistics_.seconds_viscosity);
+  std::vector<std::uint8_t> fixed;
+  if (!emitters_.empty()) fixed.resize(particles_.size());
+  for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = nozzle_around(particles_.positions[i]) != nullptr;
+  const ImplicitViscosity::Result result = implicit_viscosity_.solve(coefficients_, settings_,
+                                                                     {particles_.packs,
+                                                                      &clusters_,
+                                                                      &fluid_lists_,
+                                                                      boundary_.packs,
+                                                                      &wall_lists_,
+                                                                      {},
+                                                                      particles_.rates,
+                                                                      fixed,
+                                                                      dt,
+                                                                      particles_.velocities});
+  statistics_.viscosity_iterations += static_cast<std::uint64_t>(result.iterations);
+  statistics_.viscosity_tolerance = result.tolerance;
+  if (result.converged) return;
+  throw BlowUpError("the implicit viscosity did not converge at t = " + number(time_) + " s: after " +
+                    std::to_string(result.iterations) + " iterations the velocities are exact to " +
+                    number(result.residual) + " m/s, asked for are " + number(result.tolerance) +
+                    " m/s; raise viscosity_tolerance or viscosity_max_iterations, or lower max_time_step");
 }
 
 void SolverImpl::kick_and_drift(double dt) {
@@ -353,11 +378,11 @@ void SolverImpl::collect_wall_triangles() {
 
 void SolverImpl::evaluate_forces() {
   const Stopwatch watch(statistics_.seconds_forces);
-  const PairData data{particles_.packs, &clusters_,
-                      &fluid_lists_,    boundary_.packs,
-                      &wall_lists_,     static_cast<float>(statistics_.last_step.step),
-                      particles_.rates, particles_.wall_distances,
-                      particles_.shifts};
+  const PairData data{particles_.packs,  &clusters_,
+                      &fluid_lists_,     boundary_.packs,
+                      &wall_lists_,      static_cast<float>(statistics_.last_step.step),
+                      particles_.rates,  particles_.wall_distances,
+                      particles_.shifts, !is_implicit()};
   if (settings_.density_method == DensityMethod::summation) sum_densities(coefficients_, settings_, data);
   compute_forces(coefficients_, settings_, data);
 }
@@ -381,7 +406,7 @@ void SolverImpl::finish_step(double dt) {
       continue;
     }
     Vec3& velocity = particles_.velocities[i];
-    velocity += 0.5 * dt * acceleration;
+    if (!is_implicit()) velocity += 0.5 * dt * acceleration;
     if (const JetEmitter* emitter = nozzle_around(particles_.positions[i])) velocity = emitter->velocity();
     float& compression = particles_.compressions[i];
     compression = settings_.density_method == DensityMethod::summation
@@ -421,8 +446,7 @@ void SolverImpl::throw_blow_up(std::size_t i) const {
     message += "has " + number(1 + double(particles_.compressions[i])) +
                " times the rest density; likely the fluid is pressed into a space that is too small, or hits a wall "
                "faster than max_speed = " +
-               number(settings_.max_speed) +
-               " m/s allows for: raise " + limiting_speed + " or lower acoustic_cfl";
+               number(settings_.max_speed) + " m/s allows for: raise " + limiting_speed + " or lower acoustic_cfl";
   }
   throw BlowUpError(message);
 }
@@ -442,8 +466,8 @@ void SolverImpl::restore(StateReader& reader) {
 
 std::size_t SolverImpl::memory_bytes() const {
   std::size_t bytes = const_cast<ParticleArrays&>(particles_).memory_bytes() + boundary_.memory_bytes() +
-                      curve_.memory_bytes() + clusters_.memory_bytes() + fluid_lists_.memory_bytes() +
-                      wall_lists_.memory_bytes() +
+                      implicit_viscosity_.memory_bytes() + curve_.memory_bytes() + clusters_.memory_bytes() +
+                      fluid_lists_.memory_bytes() + wall_lists_.memory_bytes() +
                       wall_triangles_.capacity() * sizeof(decltype(wall_triangles_)::value_type);
   for (const auto& triangles : wall_triangles_) bytes += triangles.capacity() * sizeof(std::uint32_t);
   return bytes;

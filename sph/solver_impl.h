@@ -7,6 +7,7 @@
 
 #include "sph/boundary_particles.h"
 #include "sph/hilbert_order.h"
+#include "sph/implicit_viscosity.h"
 #include "sph/jet_emitter.h"
 #include "sph/neighbor_lists.h"
 #include "sph/pair_forces.h"
@@ -51,9 +52,12 @@ class SolverImpl {
   }
 
   TimeStepReport choose_step(double limit) const;
+  /// Implicit viscosity: the velocities at the end of the step, all forces included.
+  void kick_implicitly(double dt);
   /// First half of the kick, then the drift, with the wall guard; fills the packs with the state that forces are needed
   /// of.
   void kick_and_drift(double dt);
+  bool is_implicit() const { return settings_.viscosity_solver == ViscositySolver::implicit; }
   void drift_particle(std::size_t i, double dt, const std::vector<std::uint32_t>& triangles, std::uint64_t& crossings);
   void fill_pack(std::size_t i, double dt);
   void pour_emitters();
@@ -92,6 +96,7 @@ class SolverImpl {
   bool particles_changed_ = true;                           // added or removed since the last build
   int builds_since_sort_ = 0;
 
+  ImplicitViscosity implicit_viscosity_;
   double greatest_speed_ = 0, greatest_acceleration_ = 0;
   bool some_outside_ = false;
   SolverStatistics statistics_;

@@ -21,6 +21,14 @@ sph::SimulationSetup setup_of(const Scene& scene) {
   return setup;
 }
 
+std::string viscosity_solver(const sph::SolverSettings& settings, const sph::SolverStatistics& statistics) {
+  if (settings.viscosity_solver != sph::ViscositySolver::implicit) return "explicit";
+  const auto steps = static_cast<double>(std::max<std::uint64_t>(1, statistics.steps));
+  return fmt::format("implicit ({:.1f} iterations a step, tolerance {:g}: velocities to {:.1e} m/s in the last step)",
+                     static_cast<double>(statistics.viscosity_iterations) / steps, settings.viscosity_tolerance,
+                     statistics.viscosity_tolerance);
+}
+
 }  // namespace
 
 SimulationSource::SimulationSource(const Scene& scene) : solver_(setup_of(scene)) { take_state(); }
@@ -73,12 +81,13 @@ SourceStatistics SimulationSource::statistics() const {
   statistics.summary = fmt::format(
       "simulation: {} fluid and {} wall particles, spacing {:.4g} m, support radius {:.4g} m, speed of sound {:.4g} "
       "m/s "
-      "(fastest flow expected {:.4g} m/s), viscosity {:.4g} m^2/s; steps limited by acoustic/viscous/force: {}/{}/{}; "
+      "(fastest flow expected {:.4g} m/s), viscosity {:.4g} m^2/s, {}; steps limited by acoustic/viscous/force: "
+      "{}/{}/{}; "
       "{:.1f} MB",
       solver_.particle_count(), solver_.boundary_particle_count(), settings.spacing,
       settings.support_radius * settings.spacing, settings.speed_of_sound, settings.max_speed, settings.viscosity,
-      solver.steps_limited_by_acoustic, solver.steps_limited_by_viscous, solver.steps_limited_by_force,
-      static_cast<double>(solver_.memory_bytes()) / 1e6);
+      viscosity_solver(settings, solver), solver.steps_limited_by_acoustic, solver.steps_limited_by_viscous,
+      solver.steps_limited_by_force, static_cast<double>(solver_.memory_bytes()) / 1e6);
   return statistics;
 }
 

@@ -93,6 +93,7 @@ TEST(Solver, ListsAreKeptBetweenRebuildsAndDoNotChangeTheResult) {
 TEST(Solver, ReportsTheLimitsOfTheStep) {
   SimulationSetup setup = block_setup(0.1, {0, 0, 0}, {0.5, 0.5, 0.5});
   setup.settings.speed_of_sound = 20;
+  setup.settings.viscosity_solver = ViscositySolver::explicit_steps;
   setup.settings.max_speed = 2;
   setup.settings.viscosity = 1e-3;
   Solver acoustic(setup);
