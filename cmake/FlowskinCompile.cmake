@@ -30,14 +30,6 @@ target_link_libraries(flowskin_compile INTERFACE OpenMP::OpenMP_CXX)
 # Eigen's own threads and run-time alignment asserts stay out of our parallel loops.
 target_compile_definitions(flowskin_compile INTERFACE EIGEN_DONT_PARALLELIZE)
 
-# flowskin_precompile(<target> [<header>...]): parses the headers that nearly every file includes once for all of them; a third of
-# the compile time. Off with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON; every file still includes what it uses.
-function(flowskin_precompile target)
-  target_precompile_headers(${target} PRIVATE
-    <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory> <optional> <span> <string> <utility> <vector>
-    <Eigen/Dense> ${ARGN})
-endfunction()
-
 # flowskin_library(<name>): the static library flowskin::<name> of every source file below the current folder.
 function(flowskin_library name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp *.h)
@@ -46,5 +38,4 @@ function(flowskin_library name)
   add_library(flowskin::${name} ALIAS flowskin_${name})
   set_target_properties(flowskin_${name} PROPERTIES LINKER_LANGUAGE CXX)
   target_link_libraries(flowskin_${name} PUBLIC flowskin_compile)
-  flowskin_precompile(flowskin_${name})
 endfunction()
