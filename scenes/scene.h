@@ -117,6 +117,7 @@ struct OutputSpec {
   bool obj = true, ply = true, vtp = true;  ///< Formats of surface/ ...
   bool particles = true;                    ///< Whether particles/ is written.
   bool video = true;                        ///< surface.mp4 and particles.mp4, where ffmpeg is installed.
+  int checkpoint_interval = 10;             ///< Frames from one saved state to the next; 0: none is saved.
 };
 
 struct Scene {

@@ -368,6 +368,8 @@ Table<Scene> output_keys() {
       key<S>("output.vtp", at(output, &O::vtp), boolean(), "", "Write the surface as VTP."),
       key<S>("output.particles", at(output, &O::particles), boolean(), "", "Write the particles."),
       key<S>("output.video", at(output, &O::video), boolean(), "", "Make videos, where ffmpeg is installed."),
+      key<S>("output.checkpoint_interval", at(output, &O::checkpoint_interval), integer(0, 1000000), "frames",
+             "The state is saved so often, and when the run is interrupted, to go on with --resume; 0: never."),
   };
 }
 

@@ -84,6 +84,7 @@ class TrackerImpl {
   void advance(const Particles& particles) {
     check(particles);
     report_ = {};
+    field_of_particles_ = true;
     if (particles.positions.empty() || particles_.positions.empty() || mesh_.positions.empty()) {
       restart(particles);
     } else {
@@ -96,6 +97,20 @@ class TrackerImpl {
       }
     }
     finish();
+    // Where paths jump or are blended, so are the rates of the field at their end. From here on it is a function of
+    // the particles alone: a saved state need not hold it.
+    if (!field_of_particles_) rebuild_field();
+  }
+
+  const TrackerState& state() const { return state_; }
+  void restore(TrackerState state) {
+    check(state.particles);
+    check_mesh(state.mesh);
+    state_ = std::move(state);
+    rebuild_field();
+    topology_ = build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
+    if (!mesh_.positions.empty() && rest_lengths_.size() != topology_.edges.size())
+      throw std::invalid_argument("the state of the tracker has another number of springs than of edges");
   }
 
   void begin_layer() { mesh_.layers.push_back(mesh_.positions); }
@@ -123,6 +138,16 @@ class TrackerImpl {
           "\" needs the particles' velocities, which are unknown here; choose a method that goes "
           "by the field alone, such as affine");
     }
+  }
+
+  static void check_mesh(const SurfaceMesh& mesh) {
+    const std::size_t count = mesh.positions.size();
+    bool sound = mesh.rest_positions.size() == count && mesh.ids.size() == count &&
+                 (mesh.velocities.size() == count || mesh.velocities.empty());
+    for (const auto& layer : mesh.layers) sound = sound && layer.size() == count;
+    for (const Triangle& triangle : mesh.triangles)
+      for (const int vertex : triangle) sound = sound && vertex >= 0 && static_cast<std::size_t>(vertex) < count;
+    if (!sound) throw std::invalid_argument("the state of the tracker has a mesh that contradicts itself");
   }
 
   void rebuild_field() {
@@ -172,6 +197,7 @@ class TrackerImpl {
     const ParticlePaths paths(particles_, particles, kLongestJump * settings_.field.radius);
     report_.blended = paths.blended();
     report_.mismatch = paths.mismatch();
+    field_of_particles_ = !paths.blended() && !paths.jumps();
     const double limit = settings_.max_motion * settings_.field.radius;
     report_.substeps =
         static_cast<int>(std::clamp(std::ceil(paths.longest_path() / limit), 1.0, double{kMostSubsteps}));
@@ -291,14 +317,17 @@ class TrackerImpl {
 
   TrackerSettings settings_;
   std::unique_ptr<VelocityMethod> method_;
-  Particles particles_;                 // of the last call
-  std::optional<MetaballField> field_;  // of these particles; none where there are none
-  SurfaceMesh mesh_;
+  TrackerState state_;
+  Particles& particles_ = state_.particles;
+  SurfaceMesh& mesh_ = state_.mesh;
+  std::vector<double>& rest_lengths_ = state_.rest_lengths;
+  int& tolerated_ = state_.tolerated;
+  bool& velocities_known_ = state_.velocities_known;
+  TrackerReport& report_ = state_.report;
+  // What follows from the state.
+  std::optional<MetaballField> field_;  // of the particles; none where there are none
   MeshTopology topology_;
-  std::vector<double> rest_lengths_;  // of the springs [FMM13, 3.4], one an edge
-  int tolerated_ = 0;                 // regions that a fresh mesh did not get right either
-  bool velocities_known_ = false;     // mesh_.velocities are the method's, at the time of particles_
-  TrackerReport report_;
+  bool field_of_particles_ = true;  // false during a step: the field is that of paths that jump or are blended
 };
 
 Tracker::Tracker(TrackerSettings settings, const Particles& particles)
@@ -314,5 +343,7 @@ std::vector<Confidence> Tracker::confidence() const { return impl_->confidence()
 const SurfaceMesh& Tracker::mesh() const { return impl_->mesh(); }
 const TrackerReport& Tracker::report() const { return impl_->report(); }
 const TrackerSettings& Tracker::settings() const { return impl_->settings(); }
+const TrackerState& Tracker::state() const { return impl_->state(); }
+void Tracker::restore(TrackerState state) { impl_->restore(std::move(state)); }
 
 }  // namespace flowskin::tracking

@@ -46,6 +46,43 @@ struct TrackerReport {
   double area = 0;                           ///< m^2
   double max_distance = 0;                   ///< Largest |f| / |grad f| at the vertices (m).
   double seconds_velocity = 0, seconds_projection = 0, seconds_fairing = 0, seconds_topology = 0;
+
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(substeps, blended, mismatch, reextracted, reason, splits, collapses, flips, regions, held_back, born);
+    archive(components, volume, area, max_distance);
+    archive(seconds_velocity, seconds_projection, seconds_fairing, seconds_topology);
+  }
+};
+
+/// The fields of particles and mesh, for archives.
+template <class Archive>
+void visit_state(Archive& archive, Particles& p) {
+  archive(p.time, p.ids, p.positions, p.velocities, p.rest_positions, p.weights, p.layers, p.has_lasting_ids);
+}
+template <class Archive>
+void visit_state(Archive& archive, SurfaceMesh& m) {
+  archive(m.positions, m.rest_positions, m.layers, m.velocities, m.ids, m.triangles, m.next_id);
+}
+
+/// All that the tracker carries from one call to the next but its settings. What follows from it (field, adjacency) is
+/// not here. Whatever a step leaves behind for the next one belongs here, and into visit().
+struct TrackerState {
+  Particles particles;  ///< Of the last call.
+  SurfaceMesh mesh;
+  std::vector<double> rest_lengths;  ///< Of the springs [FMM13, 3.4], one an edge (m).
+  int tolerated = 0;                 ///< Regions that a fresh mesh did not get right either.
+  bool velocities_known = false;     ///< The mesh's velocities are the method's, at the time of the particles.
+  TrackerReport report;
+
+  /// For any archive that is called with values and both reads and writes them, such as the simulation's.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive.section("tracker");
+    visit_state(archive, particles);
+    visit_state(archive, mesh);
+    archive(rest_lengths, tolerated, velocities_known, report);
+  }
 };
 
 class TrackerImpl;
@@ -76,6 +113,12 @@ class Tracker {
   const TrackerReport& report() const;
   /// Settings with all automatic values filled in.
   const TrackerSettings& settings() const;
+
+  /// What must be kept to go on later.
+  const TrackerState& state() const;
+  /// Makes this tracker the one whose state this was: with the same settings all that follows is the same, bit for bit.
+  /// @throws std::invalid_argument where the state contradicts itself.
+  void restore(TrackerState state);
 
  private:
   std::unique_ptr<TrackerImpl> impl_;

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "sph/state_archive.h"
 #include "sph/triangle_mesh.h"
 
 namespace flowskin::scenes {
@@ -26,6 +29,12 @@ struct ParticleState {
   bool has_velocities = true;     ///< false: nobody knows them, they are zero
   bool has_material = true;       ///< false: rest positions are unknown and stand for the positions
   bool has_lasting_ids = true;    ///< false: ids do not name the same particle in the next state
+
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(time, ids, positions, velocities, rest_positions, densities, weights, earlier_count);
+    archive(has_velocities, has_material, has_lasting_ids);
+  }
 };
 
 /// What a source tells about itself in the log and in frames.csv; zero where it does not apply.
@@ -38,6 +47,7 @@ struct SourceStatistics {
   double mean_density_error = 0, max_density_error = 0;  ///< |density / rest density - 1|
   double last_time_step = 0;                             ///< s
   std::string summary;  ///< One line for the log: settings chosen, limits of the step, memory.
+  std::vector<std::pair<std::string, double>> seconds;  ///< Of computing time by stage, since the start.
 };
 
 /// A sequence of particle states; time only goes forward.
@@ -48,11 +58,24 @@ class ParticleSource {
   virtual const ParticleState& state() const = 0;
   /// Goes to `time` (s), not before the present one.
   virtual void advance_to(double time) = 0;
+  /// The same, but may stop on the way where `stop` says so; then state() is still the one before, and calling it again
+  /// goes on as if it had not stopped. @return false where it stopped
+  virtual bool advance_towards(double time, const std::function<bool()>& stop) {
+    (void)stop;
+    advance_to(time);
+    return true;
+  }
   /// Distance of neighbouring particles (m).
   virtual double spacing() const = 0;
   virtual SourceStatistics statistics() const = 0;
   /// True where the sequence ends before `time` (s): a recorded sequence that is too short.
   virtual bool ends_before(double) const { return false; }
+
+  /// All that its future depends on but the scene. To go on later, make the source from the scene again and restore it.
+  virtual void save(sph::StateWriter& writer) const = 0;
+  /// @throws sph::StateError, SceneError where the state is that of another source, or its files are not what they
+  /// were.
+  virtual void restore(sph::StateReader& reader) = 0;
 };
 
 }  // namespace flowskin::scenes

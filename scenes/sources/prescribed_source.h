@@ -18,8 +18,15 @@ class PrescribedSource : public ParticleSource {
   void advance_to(double time) override;
   double spacing() const override { return spacing_; }
   SourceStatistics statistics() const override;
+  void save(sph::StateWriter& writer) const override { const_cast<PrescribedSource*>(this)->visit(writer); }
+  void restore(sph::StateReader& reader) override { visit(reader); }
 
  private:
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive.section("prescribed motion");
+    archive(state_, grid_positions_, grid_step_);
+  }
   /// Positions in the moving frame at `time`, in state_.
   void place_by_integration(double time);
   /// One step of RK4 (s) from a place at a time, in the moving frame.

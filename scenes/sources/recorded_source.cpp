@@ -155,13 +155,77 @@ const ParticleState& RecordedSource::file_state(std::size_t k) {
   const std::size_t next = cache_.empty() ? 0 : cache_.rbegin()->first + 1;
   const bool may_skip = sequence_.first.has_rest_positions || !has_lasting_ids();
   for (std::size_t i = may_skip ? std::max(next, k) : next; i <= k; ++i) {
-    ParticleState state = read_sequence_file(sequence_, i).state;
-    if (sequence_.ids != ParticleSequence::Ids::of_files) std::iota(state.ids.begin(), state.ids.end(), 0);
-    settle_rest_positions(state);
-    cache_[i] = std::move(state);
+    read_into_cache(i);
     while (cache_.size() > 5) cache_.erase(cache_.begin());
   }
   return cache_.at(k);
+}
+
+void RecordedSource::read_into_cache(std::size_t k) {
+  ParticleState state = read_sequence_file(sequence_, k).state;
+  if (sequence_.ids != ParticleSequence::Ids::of_files) std::iota(state.ids.begin(), state.ids.end(), 0);
+  settle_rest_positions(state);
+  cache_[k] = std::move(state);
+}
+
+namespace {
+
+/// What must be the same about a sequence to go on with it. More files may have come.
+struct SequenceMark {
+  std::vector<std::string> names;
+  std::vector<std::uint64_t> sizes;  // bytes
+  std::vector<double> times;
+  int ids = 0;
+
+  explicit SequenceMark(const ParticleSequence& sequence) : times(sequence.times), ids(static_cast<int>(sequence.ids)) {
+    for (const auto& file : sequence.files) {
+      std::error_code error;
+      const std::uintmax_t size = std::filesystem::file_size(file, error);
+      names.push_back(file.filename().string());
+      sizes.push_back(error ? 0 : size);
+    }
+  }
+  SequenceMark() = default;
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(names, sizes, times, ids);
+  }
+};
+
+/// @throws SceneError where the files are no longer those of the mark.
+void check_same_files(const SequenceMark& then, const SequenceMark& now) {
+  const auto refuse = [](const std::string& what) {
+    throw SceneError(what + "; the run cannot be resumed with other particles: start it anew");
+  };
+  for (std::size_t k = 0; k < then.names.size(); ++k) {
+    if (k >= now.names.size() || now.names[k] != then.names[k])
+      refuse(fmt::format("{} is no longer among the recorded particles", then.names[k]));
+    if (now.sizes[k] != then.sizes[k] || now.times[k] != then.times[k])
+      refuse(fmt::format("{} has changed since the run that is to be resumed", then.names[k]));
+  }
+  if (then.ids != now.ids) refuse("whether the recorded particles have lasting ids has changed");
+}
+
+}  // namespace
+
+void RecordedSource::save(sph::StateWriter& writer) const {
+  std::vector<std::uint64_t> cached;
+  for (const auto& entry : cache_) cached.push_back(entry.first);
+  writer.section("recorded particles");
+  writer(SequenceMark(sequence_), state_, rest_positions_, cached);
+}
+
+void RecordedSource::restore(sph::StateReader& reader) {
+  SequenceMark mark;
+  std::vector<std::uint64_t> cached;
+  reader.section("recorded particles");
+  reader(mark, state_, rest_positions_, cached);
+  check_same_files(mark, SequenceMark(sequence_));
+  cache_.clear();
+  for (const std::uint64_t k : cached) {
+    if (k >= sequence_.files.size()) throw sph::StateError("the saved state names a file that is not there");
+    read_into_cache(k);
+  }
 }
 
 void RecordedSource::settle_rest_positions(ParticleState& state) {

@@ -25,6 +25,8 @@ class RecordedSource : public ParticleSource {
   double spacing() const override { return spacing_; }
   SourceStatistics statistics() const override;
   bool ends_before(double time) const override;
+  void save(sph::StateWriter& writer) const override;
+  void restore(sph::StateReader& reader) override;
 
  private:
   bool has_lasting_ids() const { return sequence_.ids != ParticleSequence::Ids::none; }
@@ -32,6 +34,8 @@ class RecordedSource : public ParticleSource {
   const ParticleState& file_state(std::size_t k);
   /// File k with velocities.
   ParticleState complete_state(std::size_t k);
+  /// Reads file k into the cache.
+  void read_into_cache(std::size_t k);
   void settle_rest_positions(ParticleState& state);
 
   ParticleSequence sequence_;

@@ -34,8 +34,18 @@ std::string viscosity_solver(const sph::SolverSettings& settings, const sph::Sol
 SimulationSource::SimulationSource(const Scene& scene) : solver_(setup_of(scene)) { take_state(); }
 
 void SimulationSource::advance_to(double time) {
+  advance_towards(time, [] { return false; });
+}
+
+bool SimulationSource::advance_towards(double time, const std::function<bool()>& stop) {
   require_forward(state_.time, time);
-  solver_.advance_to(time);
+  if (!solver_.advance_towards(time, stop)) return false;
+  take_state();
+  return true;
+}
+
+void SimulationSource::restore(sph::StateReader& reader) {
+  solver_.restore(reader);
   take_state();
 }
 
@@ -65,6 +75,9 @@ SourceStatistics SimulationSource::statistics() const {
     statistics.max_density_error = std::max(statistics.max_density_error, error);
   }
   statistics.last_time_step = solver.last_step.step;
+  statistics.seconds = {{"neighbours", solver.seconds_neighbors},
+                        {"forces", solver.seconds_forces},
+                        {"integration", solver.seconds_integration}};
   statistics.summary = fmt::format(
       "simulation: {} fluid and {} wall particles, spacing {:.4g} m, support radius {:.4g} m, speed of sound {:.4g} "
       "m/s "

@@ -15,8 +15,11 @@ class SimulationSource : public ParticleSource {
   const ParticleState& state() const override { return state_; }
   /// @throws sph::BlowUpError
   void advance_to(double time) override;
+  bool advance_towards(double time, const std::function<bool()>& stop) override;
   double spacing() const override { return solver_.settings().spacing; }
   SourceStatistics statistics() const override;
+  void save(sph::StateWriter& writer) const override { solver_.save(writer); }
+  void restore(sph::StateReader& reader) override;
   const sph::Solver& solver() const { return solver_; }
 
  private:

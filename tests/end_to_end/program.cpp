@@ -1,11 +1,13 @@
 #include "end_to_end/program.h"
 
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -54,6 +56,37 @@ Result run_flowskin(const std::vector<std::string>& arguments) {
   std::vector<std::string> command{FLOWSKIN_BINARY_DIR "/flowskin"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return run_program(command);
+}
+
+Result run_flowskin_until(const std::vector<std::string>& arguments, const std::function<bool()>& due, int signal) {
+  const fs::path said = fs::temp_directory_path() / ("flowskin_said_" + std::to_string(getpid()));
+  const pid_t child = fork();
+  if (child == 0) {
+    // A shell that runs the tests in the background has signals ignored.
+    std::signal(SIGINT, SIG_DFL);
+    const int file = open(said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    dup2(file, STDOUT_FILENO);
+    dup2(file, STDERR_FILENO);
+    std::vector<char*> words;
+    std::string program = FLOWSKIN_BINARY_DIR "/flowskin";
+    words.push_back(program.data());
+    for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
+    words.push_back(nullptr);
+    execv(program.c_str(), words.data());
+    _exit(127);
+  }
+  int status = 0;
+  bool ended = false;
+  while (!(ended = waitpid(child, &status, WNOHANG) == child) && !due()) usleep(200);
+  if (!ended) {
+    kill(child, signal);
+    waitpid(child, &status, 0);
+  }
+  Result result;
+  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  result.output = bytes(said);
+  fs::remove(said);
+  return result;
 }
 
 bool have_program(const std::string& name) { return run_program({"which", name}).status == 0; }

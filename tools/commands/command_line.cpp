@@ -10,6 +10,7 @@
 #include "scenes/scene_file.h"
 #include "tools/commands/commands.h"
 #include "tools/errors.h"
+#include "tools/pipeline/interruption.h"
 #include "tools/pipeline/scene_run.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/report/run_log.h"
@@ -55,6 +56,9 @@ CLI::App* add_run(CLI::App& app, Choice& choice) {
       "see docs/compare.md");
   run->add_option("--threads", choice.run.threads, "Threads (default: all); results do not depend on it")
       ->check(CLI::Range(1, kMaxThreads));
+  run->add_flag(
+      "--resume", choice.run.resume,
+      "Go on from the last checkpoint in the run directory, as if the run had never stopped; see docs/restart.md");
   run->add_flag("--no-pictures", choice.no_pictures, "Neither pictures nor videos");
   run->add_flag("--no-video", choice.no_video, "Pictures but no videos");
   run->add_flag("--quiet", choice.run.quiet, "No progress; warnings and errors only");
@@ -105,6 +109,8 @@ CLI::App* add_track(CLI::App& app, Choice& choice) {
       ->capture_default_str();
   track->add_option("--threads", options.run.threads, "Threads (default: all); results do not depend on it")
       ->check(CLI::Range(1, kMaxThreads));
+  track->add_flag("--resume", options.run.resume,
+                  "Go on from the last checkpoint in the run directory; more files may have come; see docs/restart.md");
   track->add_flag("--no-pictures", choice.no_pictures, "Neither pictures nor videos");
   track->add_flag("--no-video", choice.no_video, "Pictures but no videos");
   track->add_flag("--quiet", options.run.quiet, "No progress; warnings and errors only");
@@ -163,6 +169,15 @@ CLI::App* add_validate(CLI::App& app, Choice& choice) {
   return validate;
 }
 
+/// As one would type it.
+std::string shell_word(const std::string& word) {
+  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,/:@%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 int run_choice(int argc, const char* const* argv) {
   CLI::App app{
       "A viscous SPH fluid simulator whose surface is a tracked mesh: textures flow with the fluid.\n"
@@ -171,10 +186,11 @@ int run_choice(int argc, const char* const* argv) {
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 done; 1 the run failed; 2 the input or the command line is wrong.\n"
+      "Exit status: 0 done; 1 the run failed; 2 the input or the command line is wrong; 130, 143 or 129 interrupted by "
+      "Ctrl-C, SIGTERM or SIGHUP (--resume goes on).\n"
       "`flowskin COMMAND --help` lists a command's options.");
   Choice choice;
-  for (int i = 0; i < argc; ++i) choice.run.command_line += (i ? " " : "") + std::string(argv[i]);
+  for (int i = 0; i < argc; ++i) choice.run.command_line += (i ? " " : "") + shell_word(argv[i]);
   choice.track.run.command_line = choice.run.command_line;
   choice.paper.command_line = choice.run.command_line;
   CLI::App* run = add_run(app, choice);
@@ -234,6 +250,8 @@ int complain(const char* message, int status) {
 int run_program(int argc, const char* const* argv) {
   try {
     return run_choice(argc, argv);
+  } catch (const InterruptedError& error) {
+    return complain(error.what(), InterruptedError::exit_status());
   } catch (const InputError& error) {
     return complain(error.what(), kInputWrong);
   } catch (const scenes::SceneError& error) {

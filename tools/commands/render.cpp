@@ -84,7 +84,7 @@ class Redraw {
 
   static void step(Progress& progress, int done) {
     progress.update(done, "");
-    if (interrupted()) throw RunError("interrupted; the pictures made so far are whole");
+    if (interrupted()) throw InterruptedError("interrupted; the pictures made so far are whole");
   }
 
   const RenderOptions& options_;

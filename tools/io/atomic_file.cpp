@@ -3,8 +3,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <cstring>
 #include <string>
 #include <system_error>
 
@@ -13,8 +15,10 @@
 namespace flowskin::tools {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// What helps against an error of the operating system.
-std::string advice(int error, const std::filesystem::path& folder) {
+std::string advice(int error, const fs::path& folder) {
   switch (error) {
     case ENOSPC:
     case EDQUOT:
@@ -23,7 +27,7 @@ std::string advice(int error, const std::filesystem::path& folder) {
       return "the file is larger than the system or the limit of this session (ulimit -f) allows";
     case ENOENT:
     case ENOTDIR:
-      return "make the folder " + folder.string() + " first, or write elsewhere";
+      return "make the folder " + folder.string() + " first (was it removed meanwhile?), or write elsewhere";
     case EACCES:
     case EPERM:
     case EROFS:
@@ -37,68 +41,108 @@ std::string advice(int error, const std::filesystem::path& folder) {
   }
 }
 
-/// The file being written aside; removed by the destructor unless it was renamed.
-class Draft {
- public:
-  explicit Draft(const std::filesystem::path& file)
-      : file_(file), folder_(file.has_parent_path() ? file.parent_path() : std::filesystem::path(".")) {
-    // The name tells processes and threads apart; a draft that a killed process left behind is passed over.
-    static std::atomic<unsigned> counter{0};
-    do {
-      draft_ = folder_ / ("." + file.filename().string() + "." + std::to_string(::getpid()) + "-" +
-                          std::to_string(counter.fetch_add(1)) + ".part");
-      descriptor_ = ::open(draft_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
-    if (descriptor_ < 0) fail(errno);
-  }
-  ~Draft() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!renamed_) ::unlink(draft_.c_str());
-  }
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
-
-  void write(std::string_view bytes) {
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail(errno);
-      if (written == 0) fail(ENOSPC);
-      bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-  }
-
-  /// Network file systems tell of a full disk only here. The descriptor is gone even where close() fails.
-  void close() {
-    const int result = ::close(descriptor_);
-    descriptor_ = -1;
-    if (result != 0 && errno != EINTR) fail(errno);
-  }
-
-  void rename() {
-    if (::rename(draft_.c_str(), file_.c_str()) != 0) fail(errno);
-    renamed_ = true;
-  }
-
- private:
-  [[noreturn]] void fail(int error) const {
-    throw RunError("cannot write " + file_.string() + ": " + std::generic_category().message(error) + "; " +
-                   advice(error, folder_));
-  }
-
-  std::filesystem::path file_, folder_, draft_;
-  int descriptor_ = -1;
-  bool renamed_ = false;
+/// Names of the drafts of this process, for remove_drafts(): plain memory, since it runs in a signal handler.
+struct Slot {
+  std::atomic<bool> taken{false}, ready{false};
+  std::array<char, 4096> name{};
 };
+std::array<Slot, 16> slots;
+
+/// A slot with this name; -1 where there is none: then a second signal leaves the draft behind.
+int take_slot(const std::string& name) {
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    bool expected = false;
+    if (name.size() >= slots[i].name.size() || !slots[i].taken.compare_exchange_strong(expected, true)) continue;
+    std::memcpy(slots[i].name.data(), name.c_str(), name.size() + 1);
+    slots[i].ready = true;
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void free_slot(int slot) {
+  if (slot < 0) return;
+  slots[static_cast<std::size_t>(slot)].ready = false;
+  slots[static_cast<std::size_t>(slot)].taken = false;
+}
 
 }  // namespace
 
-void write_file(const std::filesystem::path& file, std::string_view bytes) {
+AtomicFile::AtomicFile(const fs::path& file)
+    : file_(file), folder_(file.has_parent_path() ? file.parent_path() : fs::path(".")) {
   if (!file.has_filename()) throw RunError("cannot write \"" + file.string() + "\": this names no file");
-  Draft draft(file);
+  // The name tells processes and threads apart; a draft that a killed process left behind is passed over.
+  static std::atomic<unsigned> counter{0};
+  do {
+    draft_ = folder_ / ("." + file.filename().string() + "." + std::to_string(::getpid()) + "-" +
+                        std::to_string(counter.fetch_add(1)) + ".part");
+    descriptor_ = ::open(draft_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
+  if (descriptor_ < 0) fail(errno);
+  slot_ = take_slot(draft_.string());
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!renamed_ && !draft_.empty()) ::unlink(draft_.c_str());
+  free_slot(slot_);
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(errno);
+    if (written == 0) fail(ENOSPC);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void AtomicFile::commit(bool durable) {
+  // File systems that cannot do it say EINVAL.
+  if (durable && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != EINTR) fail(errno);
+  // Network file systems tell of a full disk only here. The descriptor is gone even where close() fails.
+  const int result = ::close(descriptor_);
+  descriptor_ = -1;
+  if (result != 0 && errno != EINTR) fail(errno);
+  if (::rename(draft_.c_str(), file_.c_str()) != 0) fail(errno);
+  renamed_ = true;
+  if (durable) sync_folder();
+}
+
+void AtomicFile::sync_folder() const {
+  const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  ::fsync(folder);
+  ::close(folder);
+}
+
+void AtomicFile::fail(int error) const {
+  throw RunError("cannot write " + file_.string() + ": " + std::generic_category().message(error) + "; " +
+                 advice(error, folder_));
+}
+
+void write_file(const fs::path& file, std::string_view bytes) {
+  AtomicFile draft(file);
   draft.write(bytes);
-  draft.close();
-  draft.rename();
+  draft.commit();
+}
+
+void remove_drafts() noexcept {
+  for (const Slot& slot : slots)
+    if (slot.ready) ::unlink(slot.name.data());
+}
+
+void remove_stale_drafts(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const bool own = name.starts_with(".") && name.ends_with(".part");
+    if (own || name.ends_with(".part.mp4")) {
+      std::error_code ignored;
+      fs::remove(entry->path(), ignored);
+    }
+  }
 }
 
 }  // namespace flowskin::tools

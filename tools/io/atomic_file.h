@@ -6,9 +6,39 @@
 
 namespace flowskin::tools {
 
+/// A file in the making, written aside under a name that begins with a dot and ends with .part.
+class AtomicFile {
+ public:
+  /// @throws RunError as write_file does, all functions.
+  explicit AtomicFile(const std::filesystem::path& file);
+  /// Without commit() nothing is left behind.
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(std::string_view bytes);
+  /// Gives the file its name. `durable`: the bytes and the name have reached the disk itself, whatever happens then.
+  void commit(bool durable = false);
+
+ private:
+  [[noreturn]] void fail(int error) const;
+  void sync_folder() const;
+
+  std::filesystem::path file_, folder_, draft_;
+  int descriptor_ = -1;
+  int slot_ = -1;
+  bool renamed_ = false;
+};
+
 /// Writes `bytes` aside, checks that they reached the disk's file system, and renames to `file`.
 /// @throws RunError naming the file and the reason (no space, no permission, no such directory); nothing is left
 /// behind.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// Removes the files that this process is just writing aside. Safe in a signal handler, before the process ends.
+void remove_drafts() noexcept;
+
+/// Removes what killed processes left behind in a folder (not below it).
+void remove_stale_drafts(const std::filesystem::path& folder);
 
 }  // namespace flowskin::tools

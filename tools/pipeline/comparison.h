@@ -11,6 +11,7 @@
 #include "tools/pipeline/comparison_pictures.h"
 #include "tools/pipeline/ground_truth.h"
 #include "tools/pipeline/run_directory.h"
+#include "tools/pipeline/tracker_bridge.h"
 #include "tools/report/compare_csv.h"
 #include "tools/report/stage_clock.h"
 #include "tools/textures/texture_mapping.h"
@@ -48,12 +49,25 @@ class Comparison {
   /// What is compared with what, in one line.
   std::string description() const;
 
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive.section("comparison");
+    archive.each(entries_);
+    archive(truth_, rows_);
+  }
+
  private:
   struct Entry {
     std::string method;
     std::unique_ptr<tracking::Tracker> own;  ///< null: the scene's tracker
     const tracking::Tracker* tracker;
     CompareRow counts;  ///< What adds up over a frame.
+
+    template <class Archive>
+    void visit(Archive& archive) {
+      archive(method, counts);
+      if (own) visit_tracker(archive, *own);
+    }
   };
   CompareRow measure(int frame, const Entry& entry, const tracking::MetaballField& field,
                      const tracking::Flow& flow) const;

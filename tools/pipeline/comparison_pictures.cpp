@@ -34,27 +34,58 @@ std::vector<int> sheet_frames(int frames) {
   return chosen;
 }
 
+/// Where the pictures of a sheet are, each with its label above it.
+struct Grid {
+  int columns, rows, width, height, text, strip, gap;
+
+  Grid(std::size_t count, int tile_width, int tile_height)
+      : columns(std::max(1, int(std::ceil(std::sqrt(double(count)) - 1e-9)))),
+        rows((int(count) + columns - 1) / columns),
+        width(tile_width),
+        height(tile_height),
+        text(std::max(8, width / 32)),
+        strip(even(2.2 * text)),
+        gap(even(width / 80.0)) {}
+  static int up_to_even(int size) { return size + size % 2; }
+  int sheet_width() const { return up_to_even(columns * width + (columns - 1) * gap); }
+  int sheet_height() const { return up_to_even(rows * (height + strip)); }
+  /// Of the picture itself, below its label.
+  std::pair<int, int> corner(int i) const {
+    return {i % columns * (width + gap), i / columns * (height + strip) + strip};
+  }
+};
+
 }  // namespace
 
 Image label_tiles(const std::vector<Image>& tiles, const std::vector<std::string>& labels) {
   if (tiles.empty()) return {};
-  const int columns = int(std::ceil(std::sqrt(double(tiles.size())) - 1e-9));
-  const int rows = (int(tiles.size()) + columns - 1) / columns;
-  const int width = tiles.front().width, height = tiles.front().height;
-  const int text = std::max(8, width / 32), strip = even(2.2 * text), gap = even(width / 80.0);
+  const Grid grid(tiles.size(), tiles.front().width, tiles.front().height);
   Image sheet;
-  sheet.width = columns * width + (columns - 1) * gap;
-  sheet.height = rows * (height + strip);
-  sheet.width += sheet.width % 2;
-  sheet.height += sheet.height % 2;
+  sheet.width = grid.sheet_width();
+  sheet.height = grid.sheet_height();
   sheet.pixels.assign(std::size_t(sheet.width) * std::size_t(sheet.height), kPaper);
-  for (int i = 0; i < int(tiles.size()); ++i) {
-    const int left = i % columns * (width + gap), top = i / columns * (height + strip);
-    for (int y = 0; y < height; ++y)
-      std::copy_n(&tiles[std::size_t(i)].at(0, y), width, &sheet.at(left, top + strip + y));
-    draw_text(sheet, left + 0.5 * text, top + 0.5 * (strip + text), text, labels[std::size_t(i)], kInk);
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const auto [left, top] = grid.corner(int(i));
+    for (int y = 0; y < grid.height; ++y) std::copy_n(&tiles[i].at(0, y), grid.width, &sheet.at(left, top + y));
+    draw_text(sheet, left + 0.5 * grid.text, top - grid.strip + 0.5 * (grid.strip + grid.text), grid.text, labels[i],
+              kInk);
   }
   return sheet;
+}
+
+std::vector<Image> cut_tiles(const Image& sheet, std::size_t count, int width, int height) {
+  const Grid grid(count, width, height);
+  if (sheet.width != grid.sheet_width() || sheet.height != grid.sheet_height()) return {};
+  std::vector<Image> tiles;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [left, top] = grid.corner(int(i));
+    Image& tile = tiles.emplace_back();
+    tile.width = width;
+    tile.height = height;
+    for (int y = 0; y < height; ++y)
+      tile.pixels.insert(tile.pixels.end(), &sheet.at(left, top + y), &sheet.at(left, top + y) + width);
+  }
+  return tiles;
 }
 
 ComparisonPictures::ComparisonPictures(const RunDirectory& directory, const scenes::Scene& scene, const Image& texture,
@@ -62,26 +93,28 @@ ComparisonPictures::ComparisonPictures(const RunDirectory& directory, const scen
     : directory_(directory),
       frame_rate_(scene.frame_rate),
       methods_(std::move(methods)),
-      renderer_(tile_settings(scene.render), scene.boundaries, texture, fluid) {
-  for (const int frame : sheet_frames(scene.frames)) sheet_tiles_[frame];
-}
+      tile_(tile_settings(scene.render)),
+      renderer_(tile_, scene.boundaries, texture, fluid),
+      sheet_frames_(sheet_frames(scene.frames)) {}
 
-void ComparisonPictures::draw(int frame, const std::vector<SurfaceFrame>& surfaces, const ParticleFrame& particles) {
+void ComparisonPictures::draw(int frame, const std::vector<SurfaceFrame>& surfaces,
+                              const ParticleFrame& particles) const {
   std::vector<Image> tiles;
   for (const SurfaceFrame& surface : surfaces) tiles.push_back(renderer_.draw(surface));
   tiles.push_back(renderer_.draw(particles));
   std::vector<std::string> labels = methods_;
   labels.push_back(fmt::format("particles   {:.2f} s", frame / frame_rate_));
   write_png(directory_.compare_image(frame), label_tiles(tiles, labels));
-  const auto kept = sheet_tiles_.find(frame);
-  if (kept != sheet_tiles_.end()) kept->second = std::move(tiles);
 }
 
 void ComparisonPictures::finish(bool video, const std::function<void(const std::string&)>& report) const {
   std::vector<std::vector<Image>> rows(methods_.size() + 1);
   std::vector<std::string> row_labels = methods_, column_labels;
   row_labels.emplace_back("particles");
-  for (const auto& [frame, tiles] : sheet_tiles_) {
+  for (const int frame : sheet_frames_) {
+    if (!std::filesystem::exists(directory_.compare_image(frame))) continue;
+    const std::vector<Image> tiles =
+        cut_tiles(read_image(directory_.compare_image(frame)), rows.size(), tile_.width, tile_.height);
     if (tiles.empty()) continue;
     column_labels.push_back(fmt::format("{:.2f} s", frame / frame_rate_));
     for (std::size_t i = 0; i < tiles.size(); ++i) rows[i].push_back(tiles[i]);

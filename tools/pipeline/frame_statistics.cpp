@@ -1,6 +1,7 @@
 #include "tools/pipeline/frame_statistics.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "tools/pipeline/surface_statistics.h"
@@ -43,6 +44,9 @@ void FrameStatistics::add(const tracking::TrackerReport& report) {
   flips_ += report.flips;
   regions_ += report.regions;
   seconds_topology_ += report.seconds_topology;
+  const double seconds[] = {report.seconds_velocity, report.seconds_projection, report.seconds_fairing,
+                            report.seconds_topology};
+  for (std::size_t stage = 0; stage < std::size(seconds); ++stage) tracking_seconds_[stage].second += seconds[stage];
   if (!report.reextracted) return;
   ++reextractions_;
   last_reason_ = report.reason;

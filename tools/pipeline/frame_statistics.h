@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenes/sources/particle_source.h"
@@ -23,6 +24,15 @@ class FrameStatistics {
   /// Why the whole mesh was replaced last.
   const std::string& last_reason() const { return last_reason_; }
   int frames_reextracted() const { return frames_reextracted_; }
+  /// Of the tracker's steps by stage, since the start.
+  const std::vector<std::pair<std::string, double>>& tracking_seconds() const { return tracking_seconds_; }
+
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive.section("statistics");
+    archive(substeps_, reextractions_, frames_reextracted_, splits_, collapses_, flips_, regions_, seconds_topology_);
+    archive(last_reason_, previous_ids_, tracking_seconds_);
+  }
 
  private:
   int substeps_ = 0, reextractions_ = 0, frames_reextracted_ = 0;
@@ -30,6 +40,8 @@ class FrameStatistics {
   double seconds_topology_ = 0;
   std::string last_reason_;
   std::vector<std::uint64_t> previous_ids_;  // ascending
+  std::vector<std::pair<std::string, double>> tracking_seconds_{
+      {"velocity", 0}, {"projection", 0}, {"fairing", 0}, {"topology", 0}};
 };
 
 }  // namespace flowskin::tools

@@ -24,6 +24,11 @@ class FrameWriter {
   void write(int frame, const SurfaceFrame& surface);
   void write(int frame, const ParticleFrame& particles);
 
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(surface_files_, particle_files_);
+  }
+
  private:
   const RunDirectory& directory_;
   scenes::OutputSpec formats_;

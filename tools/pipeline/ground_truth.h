@@ -7,6 +7,7 @@
 #include "scenes/scene.h"
 #include "scenes/sources/motion.h"
 #include "tracking/ground_truth/markers.h"
+#include "tracking/tracker.h"
 
 namespace flowskin::tools {
 
@@ -31,6 +32,13 @@ class GroundTruth {
   tracking::Flow flow() const;
   /// In words, such as "the prescribed motion".
   std::string description() const;
+
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive.section("markers");
+    tracking::visit_state(archive, particles_);
+    archive(markers_);
+  }
 
  private:
   tracking::FlowAt exact_flow() const;

@@ -1,10 +1,25 @@
-// Ctrl-C and SIGTERM: asked for between frames, so that what is written stays whole.
+// Signals: the run stops at the next safe point, so that what is written stays whole and nothing is lost.
 #pragma once
+
+#include <string>
+
+#include "tools/errors.h"
 
 namespace flowskin::tools {
 
-/// From now on SIGINT and SIGTERM only set a mark; a second one ends the program at once.
+/// From now on SIGINT, SIGTERM and SIGHUP only set a mark; a second one ends the program at once, without leaving half
+/// files. Signals that were ignored (nohup) stay so. A file that grows past the limit of the session is an error like
+/// a full disk, not a signal that kills.
 void catch_interruptions();
 bool interrupted();
+/// The signal that set the mark, such as "SIGINT"; empty where there was none.
+std::string interruption_name();
+
+/// The run was asked to stop, and did. Exit status: 128 + the signal, as shells have it.
+struct InterruptedError : RunError {
+  using RunError::RunError;
+  /// 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
+  static int exit_status();
+};
 
 }  // namespace flowskin::tools

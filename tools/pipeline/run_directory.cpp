@@ -1,11 +1,16 @@
 #include "tools/pipeline/run_directory.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 
 #include "tools/errors.h"
+#include "tools/io/atomic_file.h"
 
 namespace flowskin::tools {
 
@@ -40,15 +45,49 @@ void RunDirectory::prepare() const {
       if (!fs::exists(scene()) && !fs::exists(log()))
         throw InputError(fmt::format("{} is not empty and holds no earlier run; give an empty or new folder to --out",
                                      root_.string()));
-      for (const fs::path& old : {surface_folder(), particle_folder(), image_folder(), scene(), log(), frames_csv(),
-                                  contact_sheet(), surface_video(), particle_video(), compare_csv(), compare_markdown(),
-                                  compare_sheet(), compare_video(), root_ / "compare.svg", root_ / "compare.png"})
+      for (const fs::path& old :
+           {surface_folder(), particle_folder(), image_folder(), checkpoint_folder(), scene(), log(), frames_csv(),
+            contact_sheet(), surface_video(), particle_video(), compare_csv(), compare_markdown(), compare_sheet(),
+            compare_video(), root_ / "compare.svg", root_ / "compare.png"})
         fs::remove_all(old);
     }
-    for (const fs::path& folder : {surface_folder(), particle_folder(), image_folder()}) fs::create_directories(folder);
+    for (const fs::path& folder : folders()) fs::create_directories(folder);
+    remove_stale_drafts(root_);
   } catch (const fs::filesystem_error& error) {
     throw RunError(fmt::format("cannot prepare the folder {}: {}", root_.string(), error.code().message()));
   }
+}
+
+std::vector<fs::path> RunDirectory::folders() const {
+  return {surface_folder(), particle_folder(), image_folder(), checkpoint_folder()};
+}
+
+void RunDirectory::prepare_to_resume() const {
+  try {
+    for (const fs::path& folder : folders()) {
+      fs::create_directories(folder);
+      remove_stale_drafts(folder);
+    }
+    remove_stale_drafts(root_);
+  } catch (const fs::filesystem_error& error) {
+    throw RunError(fmt::format("cannot prepare the folder {}: {}", root_.string(), error.code().message()));
+  }
+}
+
+RunLock::~RunLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void RunLock::take(const RunDirectory& directory) {
+  if (descriptor_ >= 0) return;
+  descriptor_ = ::open(directory.root().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(descriptor_);
+  descriptor_ = -1;
+  throw InputError(
+      fmt::format("another flowskin is just running into {}; wait for it, stop it, or give another folder "
+                  "to --out",
+                  directory.root().string()));
 }
 
 void RunDirectory::check_is_run() const {

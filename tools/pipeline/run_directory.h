@@ -15,6 +15,8 @@ class RunDirectory {
   /// Makes the folders. Files of an earlier run are removed first, so that two runs are never mixed.
   /// @throws InputError where the folder holds something that is not a run; RunError where it cannot be made.
   void prepare() const;
+  /// The same for a run that goes on: nothing is removed but what a killed run left half written.
+  void prepare_to_resume() const;
   /// @throws InputError where this is no finished or interrupted run.
   void check_is_run() const;
 
@@ -34,6 +36,7 @@ class RunDirectory {
   std::filesystem::path surface_folder() const { return root_ / "surface"; }
   std::filesystem::path particle_folder() const { return root_ / "particles"; }
   std::filesystem::path image_folder() const { return root_ / "images"; }
+  std::filesystem::path checkpoint_folder() const { return root_ / "checkpoint"; }
 
   /// surface/frame_0012.obj and so on; `extension` with its dot.
   std::filesystem::path surface(int frame, const std::string& extension) const;
@@ -47,7 +50,26 @@ class RunDirectory {
                                     const std::string& extension);
 
  private:
+  std::vector<std::filesystem::path> folders() const;
+
   std::filesystem::path root_;
+};
+
+/// Keeps other processes from running into the same folder, as long as it lives; killed processes hold no locks.
+class RunLock {
+ public:
+  RunLock() = default;
+  ~RunLock();
+  RunLock(const RunLock&) = delete;
+  RunLock& operator=(const RunLock&) = delete;
+
+  /// Does nothing where the folder does not exist, where it is locked by this already, or on file systems without
+  /// locks.
+  /// @throws InputError where another process has it.
+  void take(const RunDirectory& directory);
+
+ private:
+  int descriptor_ = -1;
 };
 
 }  // namespace flowskin::tools

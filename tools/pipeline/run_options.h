@@ -17,6 +17,7 @@ struct RunOptions {
   bool pictures = true;
   bool video = true;
   bool quiet = false;
+  bool resume = false;       ///< go on from the last checkpoint in the run directory
   std::string command_line;  ///< as typed, for the log
 };
 

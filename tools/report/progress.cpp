@@ -23,9 +23,10 @@ std::string format_duration(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-Progress::Progress(std::string unit, int total, Mode mode)
+Progress::Progress(std::string unit, int total, Mode mode, int before)
     : unit_(std::move(unit)),
       total_(total),
+      before_(before),
       quiet_(mode == Mode::quiet),
       terminal_(isatty(STDERR_FILENO) != 0),
       start_(wall_seconds()) {}
@@ -39,9 +40,10 @@ void Progress::update(int done, const std::string& details) {
   if (!last && now - last_shown_ < (terminal_ ? kTerminalInterval : kPlainInterval)) return;
   last_shown_ = now;
   const double elapsed = now - start_;
-  const std::string left = last       ? fmt::format("took {}", format_duration(elapsed))
-                           : done > 0 ? fmt::format("{} left", format_duration(elapsed * (total_ - done) / done))
-                                      : std::string("starting");
+  const std::string left = last ? fmt::format("took {}", format_duration(elapsed))
+                           : done > before_
+                               ? fmt::format("{} left", format_duration(elapsed * (total_ - done) / (done - before_)))
+                               : std::string("starting");
   std::string line = fmt::format("{} {}/{}  {}  {}", unit_, done, total_, details, left);
   if (!terminal_) {
     fmt::print(stderr, "{}\n", line);

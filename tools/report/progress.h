@@ -9,8 +9,8 @@ class Progress {
  public:
   enum class Mode { automatic, quiet };
 
-  /// `total` steps are to come; `unit` is what is counted, such as "frame".
-  Progress(std::string unit, int total, Mode mode);
+  /// `total` steps are to come, `before` of which are done already; `unit` is what is counted, such as "frame".
+  Progress(std::string unit, int total, Mode mode, int before = 0);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -22,7 +22,7 @@ class Progress {
 
  private:
   std::string unit_;
-  int total_;
+  int total_, before_;
   bool quiet_;
   bool terminal_;
   double start_;

@@ -18,11 +18,12 @@ struct RunLog::Impl {
   std::shared_ptr<spdlog::sinks::basic_file_sink_st> file;
   std::shared_ptr<spdlog::sinks::stderr_sink_st> terminal;
   std::unique_ptr<spdlog::logger> logger;
+  std::string failure;
 };
 
-RunLog::RunLog(const std::filesystem::path& file, bool quiet) : impl_(std::make_unique<Impl>()) {
+RunLog::RunLog(const std::filesystem::path& file, bool quiet, bool append) : impl_(std::make_unique<Impl>()) {
   try {
-    impl_->file = std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string(), true);
+    impl_->file = std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string(), !append);
   } catch (const spdlog::spdlog_ex& error) {
     throw RunError(fmt::format("cannot write the log {}: {}", file.string(), error.what()));
   }
@@ -33,6 +34,7 @@ RunLog::RunLog(const std::filesystem::path& file, bool quiet) : impl_(std::make_
   impl_->logger = std::make_unique<spdlog::logger>("run", spdlog::sinks_init_list{impl_->file, impl_->terminal});
   impl_->logger->set_level(spdlog::level::debug);
   impl_->logger->flush_on(spdlog::level::debug);
+  impl_->logger->set_error_handler([impl = impl_.get()](const std::string& what) { impl->failure = what; });
 }
 
 RunLog::~RunLog() = default;
@@ -40,6 +42,7 @@ RunLog::~RunLog() = default;
 void RunLog::info(const std::string& message) { impl_->logger->info("{}", message); }
 void RunLog::detail(const std::string& message) { impl_->logger->debug("{}", message); }
 void RunLog::warning(const std::string& message) { impl_->logger->warn("{}", message); }
+const std::string& RunLog::failure() const { return impl_->failure; }
 
 std::string version_text() { return "flowskin " FLOWSKIN_VERSION; }
 

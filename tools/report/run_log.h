@@ -10,13 +10,17 @@ namespace flowskin::tools {
 /// Appends lines with the time of day to a file, flushing each; important ones go to the terminal as well.
 class RunLog {
  public:
-  /// @throws RunError where the file cannot be opened. `quiet`: only warnings reach the terminal.
-  RunLog(const std::filesystem::path& file, bool quiet);
+  /// @throws RunError where the file cannot be opened. `quiet`: only warnings reach the terminal. `append`: goes on
+  /// with a log that is there.
+  RunLog(const std::filesystem::path& file, bool quiet, bool append = false);
   ~RunLog();
 
   void info(const std::string& message);     ///< To the file and the terminal.
   void detail(const std::string& message);   ///< To the file only.
   void warning(const std::string& message);  ///< To the file and, even if quiet, the terminal.
+
+  /// Why lines did not reach the file (a full disk), which does not end the run; empty where all did.
+  const std::string& failure() const;
 
  private:
   struct Impl;

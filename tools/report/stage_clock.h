@@ -46,6 +46,11 @@ class StageClock {
 
   const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
 
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(stages_);
+  }
+
  private:
   std::vector<std::pair<std::string, double>> stages_;
 };

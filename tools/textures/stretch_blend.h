@@ -33,6 +33,11 @@ class FollowingWeights {
   void reset(const tracking::SurfaceMesh& mesh);
   const std::vector<double>& weights() const { return weights_; }
 
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(weights_, by_id_);
+  }
+
  private:
   std::vector<double> known_weights(const tracking::SurfaceMesh& mesh) const;
 

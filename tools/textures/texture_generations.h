@@ -36,6 +36,12 @@ class TextureGenerations {
   /// How many generations there have been.
   int generations() const { return generations_; }
 
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive.section("textures");
+    archive(layers_, older_is_rest_, taking_over_, weights_, overstretched_, generations_);
+  }
+
  private:
   /// A generation but the first: where the material was when it began.
   struct Layer {
@@ -43,6 +49,11 @@ class TextureGenerations {
     bool known = false;
     std::unordered_map<std::uint64_t, Vec3> places;  // by the particles' ids
     RestFrame frame;
+
+    template <class Archive>
+    void visit(Archive& archive) {
+      archive(time, known, places, frame);
+    }
   };
 
   void fade(tracking::Tracker& tracker, const tracking::Particles& particles, double most);

@@ -11,6 +11,11 @@ struct RestFrame {
   Vec3 center = Vec3::Zero();  ///< m
   double size = 1;             ///< Longest edge of the bounding box of the rest positions at the start (m).
   double height = 0;           ///< Its extent along y (m), for colours; 0: size.
+
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(center, size, height);
+  }
 };
 
 RestFrame rest_frame(const std::vector<Vec3>& rest_positions);

@@ -140,6 +140,7 @@ void ParticlePaths::match(const Particles& from, const Particles& to, double lon
       const Vec3 &x = to.positions[j], &v = to.velocities[j++];
       paths_.push_back({x - duration * v, v, x, v, false});
     } else if ((to.positions[j] - from.positions[i]).norm() > jump) {
+      jumps_ = true;
       const Vec3 &x0 = from.positions[i++], &x1 = to.positions[j++], none = Vec3::Zero();
       paths_.push_back({x0, none, x0, none, true});
       paths_.push_back({x1, none, x1, none, false});

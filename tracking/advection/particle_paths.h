@@ -34,6 +34,8 @@ class ParticlePaths {
   double end_time() const { return end_; }
   /// True where the field is blended between the states.
   bool blended() const { return blended_; }
+  /// True where some particle jumps.
+  bool jumps() const { return jumps_; }
 
   /// Positions and velocities at a time between both states; only where they are not blended. At end_time() only the
   /// particles of the later state are left, exactly as they are given there.
@@ -56,7 +58,7 @@ class ParticlePaths {
   void match(const Particles& from, const Particles& to, double longest_jump);
 
   double begin_, end_;
-  bool blended_ = false;
+  bool blended_ = false, jumps_ = false;
   double mismatch_ = 0;
   std::vector<Path> paths_;              // in order of ascending id
   std::vector<FieldPart> early_, late_;  // blended: of both states

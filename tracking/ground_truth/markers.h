@@ -31,6 +31,11 @@ struct Markers {
   std::vector<std::uint8_t> left;    ///< 1: left the surface, for good.
 
   int on_surface() const;  ///< How many have not left.
+
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(time, ids, rest_positions, positions, normals, depths, left);
+  }
 };
 
 /// Markers on the vertices of a mesh; where there are more than `most`, on every second, third, ... of them.
