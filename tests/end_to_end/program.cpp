@@ -58,7 +58,8 @@ Result run_flowskin(const std::vector<std::string>& arguments) {
   return run_program(command);
 }
 
-Result run_flowskin_until(const std::vector<std::string>& arguments, const std::function<bool()>& due, int signal) {
+Result run_flowskin_until(const std::vector<std::string>& arguments, const std::function<bool()>& due, int signal,
+                          int times) {
   const fs::path said = fs::temp_directory_path() / ("flowskin_said_" + std::to_string(getpid()));
   const pid_t child = fork();
   if (child == 0) {
@@ -79,7 +80,10 @@ Result run_flowskin_until(const std::vector<std::string>& arguments, const std::
   bool ended = false;
   while (!(ended = waitpid(child, &status, WNOHANG) == child) && !due()) usleep(200);
   if (!ended) {
-    kill(child, signal);
+    for (int k = 0; k < times; ++k) {
+      kill(child, signal);
+      if (k + 1 < times) usleep(3000);  // two at once would count as one
+    }
     waitpid(child, &status, 0);
   }
   Result result;
@@ -92,6 +96,8 @@ Result run_flowskin_until(const std::vector<std::string>& arguments, const std::
 bool have_program(const std::string& name) { return run_program({"which", name}).status == 0; }
 
 fs::path fresh_folder(const std::string& name) {
+  // Threads that wait must not keep the processors busy where others work.
+  setenv("OMP_WAIT_POLICY", "passive", 0);
   const fs::path folder = fs::temp_directory_path() / ("flowskin_" + name + "_" + std::to_string(getpid()));
   fs::remove_all(folder);
   fs::create_directories(folder);

@@ -15,8 +15,9 @@ struct Result {
 
 /// Runs build/flowskin with these arguments.
 Result run_flowskin(const std::vector<std::string>& arguments);
-/// Runs build/flowskin, and sends it a signal once `due` says so; it is asked all the time.
-Result run_flowskin_until(const std::vector<std::string>& arguments, const std::function<bool()>& due, int signal);
+/// Runs build/flowskin, and sends it a signal, so many times, once `due` says so; it is asked all the time.
+Result run_flowskin_until(const std::vector<std::string>& arguments, const std::function<bool()>& due, int signal,
+                          int times = 1);
 /// Runs a program of the path; status 127 where there is none.
 Result run_program(const std::vector<std::string>& command);
 bool have_program(const std::string& name);

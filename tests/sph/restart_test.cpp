@@ -67,6 +67,15 @@ std::vector<Case> cases() {
          setup.settings.domain = {{0, 0.03, 0}, {0.3, 0.6, 0.17}};
          return setup;
        }},
+      {"PeriodicDomain",
+       [] {
+         SimulationSetup setup = block_setup(0.025, {0.05, 0, 0.05}, {0.25, 0.2, 0.2});
+         setup.bodies[0].velocity = {4, 0, 3};  // across the seams, several times
+         setup.settings.viscosity = 1e-3;
+         setup.settings.domain = {{0, 0, 0}, {0.3, 0, 0.3}};
+         setup.settings.periodic = {true, false, true};
+         return setup;
+       }},
       {"Xsph",
        [] {
          SimulationSetup setup = splash();
