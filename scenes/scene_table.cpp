@@ -449,21 +449,21 @@ Table<BoundarySpec> boundary_table() {
   const auto interpolation = choice_of<WallMotion::Interpolation>(
       {{"linear", WallMotion::Interpolation::linear}, {"smooth", WallMotion::Interpolation::smooth}});
   Table<B> table = placement_keys(&B::mesh);
-  append<B>(table,
-            {
-                key<B>("slip", at(&B::boundary, &sph::Boundary::slip), number(at_least(0, 1)), "",
-                       "0: no slip, 1: free slip; between: the share of wall friction taken away."),
-                key<B>("surface_velocity", at(&B::boundary, &sph::Boundary::surface_velocity), vector(1e4), "m/s",
-                       "Velocity of the surface along the wall, as of a conveyor belt."),
-                list<B>("keyframes", at(&B::boundary, &sph::Boundary::motion, &WallMotion::keyframes), keyframe_table(),
-                        "Motion of the wall; empty: it rests."),
-                key<B>("interpolation", at(&B::boundary, &sph::Boundary::motion, &WallMotion::interpolation), interpolation,
-                       "", "Between keyframes: linear, at constant speed, or smooth, from rest to rest."),
-                key<B>("pivot", at(&B::boundary, &sph::Boundary::motion, &WallMotion::pivot), vector(), "m",
-                       "Point that the keyframes rotate about, in the place of the mesh without them."),
-                key<B>("visible", at(&B::visible), boolean(), "", "Whether it is drawn in the pictures."),
-                key<B>("color", at(&B::color), color(), "", "Reflectance in the pictures."),
-            });
+  append<B>(table, {
+                       key<B>("slip", at(&B::boundary, &sph::Boundary::slip), number(at_least(0, 1)), "",
+                              "0: no slip, 1: free slip; between: the share of wall friction taken away."),
+                       key<B>("surface_velocity", at(&B::boundary, &sph::Boundary::surface_velocity), vector(1e4),
+                              "m/s", "Velocity of the surface along the wall, as of a conveyor belt."),
+                       list<B>("keyframes", at(&B::boundary, &sph::Boundary::motion, &WallMotion::keyframes),
+                               keyframe_table(), "Motion of the wall; empty: it rests."),
+                       key<B>("interpolation", at(&B::boundary, &sph::Boundary::motion, &WallMotion::interpolation),
+                              interpolation, "",
+                              "Between keyframes: linear, at constant speed, or smooth, from rest to rest."),
+                       key<B>("pivot", at(&B::boundary, &sph::Boundary::motion, &WallMotion::pivot), vector(), "m",
+                              "Point that the keyframes rotate about, in the place of the mesh without them."),
+                       key<B>("visible", at(&B::visible), boolean(), "", "Whether it is drawn in the pictures."),
+                       key<B>("color", at(&B::color), color(), "", "Reflectance in the pictures."),
+                   });
   return table;
 }
 
