@@ -75,9 +75,9 @@ SourceStatistics SimulationSource::statistics() const {
     statistics.max_density_error = std::max(statistics.max_density_error, error);
   }
   statistics.last_time_step = solver.last_step.step;
-  statistics.seconds = {{"neighbours", solver.seconds_neighbors},
-                        {"forces", solver.seconds_forces},
-                        {"integration", solver.seconds_integration}};
+  statistics.seconds = {{"neighbours", solver.seconds_neighbors}, {"forces", solver.seconds_forces}};
+  if (solver.seconds_viscosity > 0) statistics.seconds.emplace_back("viscosity", solver.seconds_viscosity);
+  statistics.seconds.emplace_back("integration", solver.seconds_integration);
   statistics.summary = fmt::format(
       "simulation: {} fluid and {} wall particles, spacing {:.4g} m, support radius {:.4g} m, speed of sound {:.4g} "
       "m/s "

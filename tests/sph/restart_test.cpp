@@ -67,6 +67,13 @@ std::vector<Case> cases() {
          setup.settings.domain = {{0, 0.03, 0}, {0.3, 0.6, 0.17}};
          return setup;
        }},
+      {"ImplicitViscosity",
+       [] {
+         SimulationSetup setup = splash();
+         setup.settings.viscosity = 1;
+         setup.settings.viscosity_solver = ViscositySolver::implicit;
+         return setup;
+       }},
       {"PeriodicDomain",
        [] {
          SimulationSetup setup = block_setup(0.025, {0.05, 0, 0.05}, {0.25, 0.2, 0.2});
