@@ -120,6 +120,16 @@ void check_solver(const Scene& scene, Checker& checker) {
   }
 }
 
+void check_boundaries(const Scene& scene, Checker& checker) {
+  for (std::size_t i = 0; i < scene.boundaries.size(); ++i) {
+    const std::vector<sph::Keyframe>& keys = scene.boundaries[i].boundary.motion.keyframes;
+    for (std::size_t k = 1; k < keys.size(); ++k) {
+      checker.require(keys[k].time > keys[k - 1].time, "boundaries", i, "keyframes",
+                      fmt::format("has an entry {} whose time is not later than that of the one before it", k));
+    }
+  }
+}
+
 void check_pictures(const Scene& scene, Checker& checker) {
   const CameraSpec& camera = scene.render.camera;
   checker.require(!scene.texture.axis.isZero(0), "texture.axis", "is zero; expected a direction");
@@ -174,6 +184,7 @@ void check_consistency(const Scene& scene, const JsonNode& root, Problems& probl
   Checker checker(root, problems);
   check_particles(scene, checker);
   check_solver(scene, checker);
+  check_boundaries(scene, checker);
   check_pictures(scene, checker);
 }
 

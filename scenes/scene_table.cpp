@@ -426,15 +426,42 @@ Table<sph::Emitter> emitter_table() {
   };
 }
 
+namespace {
+
+Table<sph::Keyframe> keyframe_table() {
+  using K = sph::Keyframe;
+  return {
+      key<K>("time", at(&K::time), number(at_least(-1e6, 1e6)), "s", "Later than that of the keyframe before.")
+          .is_required(),
+      key<K>("translate", at(&K::translate), vector(), "m", "Translation, applied last."),
+      key<K>("rotate", at(&K::rotate), vector(), "degrees",
+             "Rotation about x, then y, then z, about the pivot; a single angle may grow over many turns."),
+  };
+}
+
+}  // namespace
+
 Table<BoundarySpec> boundary_table() {
   using B = BoundarySpec;
+  using Motion = sph::BoundaryMotion;
+  const auto interpolation = choice_of<Motion::Interpolation>(
+      {{"linear", Motion::Interpolation::linear}, {"smooth", Motion::Interpolation::smooth}});
   Table<B> table = placement_keys(&B::mesh);
-  append<B>(table, {
-                       key<B>("slip", at(&B::boundary, &sph::Boundary::slip), number(at_least(0, 1)), "",
-                              "0: no slip, 1: free slip; between: the share of wall friction taken away."),
-                       key<B>("visible", at(&B::visible), boolean(), "", "Whether it is drawn in the pictures."),
-                       key<B>("color", at(&B::color), color(), "", "Reflectance in the pictures."),
-                   });
+  append<B>(table,
+            {
+                key<B>("slip", at(&B::boundary, &sph::Boundary::slip), number(at_least(0, 1)), "",
+                       "0: no slip, 1: free slip; between: the share of wall friction taken away."),
+                key<B>("surface_velocity", at(&B::boundary, &sph::Boundary::surface_velocity), vector(1e4), "m/s",
+                       "Velocity of the surface along the wall, as of a conveyor belt."),
+                list<B>("keyframes", at(&B::boundary, &sph::Boundary::motion, &Motion::keyframes), keyframe_table(),
+                        "Motion of the wall; empty: it rests."),
+                key<B>("interpolation", at(&B::boundary, &sph::Boundary::motion, &Motion::interpolation), interpolation,
+                       "", "Between keyframes: linear, at constant speed, or smooth, from rest to rest."),
+                key<B>("pivot", at(&B::boundary, &sph::Boundary::motion, &Motion::pivot), vector(), "m",
+                       "Point that the keyframes rotate about, in the place of the mesh without them."),
+                key<B>("visible", at(&B::visible), boolean(), "", "Whether it is drawn in the pictures."),
+                key<B>("color", at(&B::color), color(), "", "Reflectance in the pictures."),
+            });
   return table;
 }
 

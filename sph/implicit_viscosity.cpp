@@ -183,7 +183,12 @@ ImplicitViscosity::Lanes3 ImplicitViscosity::Loops::resistance(std::size_t clust
     const auto [dx, dy, dz] = image.difference<periodic>(x, y, z, b);
     const Float8 r2 = dx * dx + dy * dy + dz * dz;
     const Float8 shape = broadcast(b.volume * b.stick) * Kernel::shape(sqrt(r2) * wall_inverse_support);
-    add(pairs.wall<variable>(shape, r2, viscosity), dx, dy, dz, r2, vx, vy, vz);
+    const Float8 k = pairs.wall<variable>(shape, r2, viscosity);
+    if constexpr (first) {
+      add(k, dx, dy, dz, r2, vx - broadcast(b.vx), vy - broadcast(b.vy), vz - broadcast(b.vz));
+    } else {
+      add(k, dx, dy, dz, r2, vx, vy, vz);
+    }
   }
   return force;
 }

@@ -161,7 +161,7 @@ inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidP
   }
 }
 
-// A wall rests, pushes with the pressure of the fluid particle [AIA*12, Eq. 9] and resists shear.
+// A wall pushes with the pressure of the fluid particle [AIA*12, Eq. 9] and resists shear.
 template <typename Kernel, typename Viscosity, bool periodic>
 inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPack& b, const Float8& own_viscosity,
                      Sums& sums) {
@@ -169,7 +169,8 @@ inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPac
   const Float8 r2 = dx * dx + dy * dy + dz * dz;
   sums.wall_distance2 = min(sums.wall_distance2, r2);
   const Float8 s = broadcast(b.volume) * Kernel::shape(sqrt(r2) * c.wall_inverse_support);
-  const Float8 approach = i.vx * dx + i.vy * dy + i.vz * dz;
+  const Float8 ux = i.vx - broadcast(b.vx), uy = i.vy - broadcast(b.vy), uz = i.vz - broadcast(b.vz);
+  const Float8 approach = ux * dx + uy * dy + uz * dz;
   sums.wall_divergence += s * approach;
   const Float8 pressure = s * i.pressure * c.wall_pressure;
   sums.ax += pressure * dx;
@@ -183,9 +184,9 @@ inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPac
     sums.fy -= friction * approach * dy;
     sums.fz -= friction * approach * dz;
   } else {
-    sums.fx -= friction * r2 * i.vx;
-    sums.fy -= friction * r2 * i.vy;
-    sums.fz -= friction * r2 * i.vz;
+    sums.fx -= friction * r2 * ux;
+    sums.fy -= friction * r2 * uy;
+    sums.fz -= friction * r2 * uz;
   }
 }
 

@@ -12,12 +12,12 @@ struct alignas(32) FluidPack {
   float pressure;     ///< p / rho^2 times the factors that all pairs share (PairCoefficients::pack_pressure)
 };
 
-/// A boundary particle in the pair loop; it rests.
+/// A boundary particle in the pair loop.
 struct alignas(16) WallPack {
-  float x, y, z;  ///< m
-  float volume;   ///< V_b [AIA*12, Eq. 4] over the cube of the wall's support radius
-  float stick;    ///< 1 - slip
-  float unused[3];
+  float x, y, z;                 ///< m
+  float volume;                  ///< V_b [AIA*12, Eq. 4] over the cube of the wall's support radius
+  float stick;                   ///< 1 - slip
+  float vx = 0, vy = 0, vz = 0;  ///< m/s; of the wall or of a surface that runs along on it
 };
 
 }  // namespace flowskin::sph

@@ -22,6 +22,11 @@ class PointView {
         stride_(sizeof(FluidPack) / sizeof(float)),
         count_(packs.size()) {}
 
+  PointView(const std::vector<WallPack>& packs)  // NOLINT(google-explicit-constructor)
+      : first_(reinterpret_cast<const float*>(packs.data())),
+        stride_(sizeof(WallPack) / sizeof(float)),
+        count_(packs.size()) {}
+
   std::size_t size() const { return count_; }
   bool empty() const { return count_ == 0; }
   Eigen::Vector3f operator[](std::size_t i) const { return Eigen::Vector3f(first_ + i * stride_); }

@@ -79,6 +79,19 @@ void check_mesh(const TriangleMesh& mesh, const std::string& name) {
   }
 }
 
+void check_motion(const Boundary& boundary, const std::string& name) {
+  const std::vector<Keyframe>& keys = boundary.motion.keyframes;
+  bool finite = boundary.motion.pivot.allFinite() && boundary.surface_velocity.allFinite();
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    finite = finite && std::isfinite(keys[k].time) && keys[k].translate.allFinite() && keys[k].rotate.allFinite();
+    if (k > 0 && !(keys[k].time > keys[k - 1].time)) {
+      throw SettingsError(name + ": keyframe " + std::to_string(k + 1) + " at " + number(keys[k].time) +
+                          " s must be later than the one before it, at " + number(keys[k - 1].time) + " s");
+    }
+  }
+  if (!finite) throw SettingsError(name + ": its motion has a number that is not finite");
+}
+
 }  // namespace
 
 void check_setup(const SimulationSetup& setup) {
@@ -94,6 +107,7 @@ void check_setup(const SimulationSetup& setup) {
     const std::string name = "boundary " + std::to_string(b + 1);
     check_mesh(setup.boundaries[b].mesh, name);
     if (setup.boundaries[b].mesh.triangles.empty()) throw SettingsError(name + ": its mesh has no triangles");
+    check_motion(setup.boundaries[b], name);
     if (!(setup.boundaries[b].slip >= 0 && setup.boundaries[b].slip <= 1)) {
       throw SettingsError(name + ": slip = " + number(setup.boundaries[b].slip) +
                           ": expected 0 (no-slip) to 1 (free slip)");

@@ -21,11 +21,11 @@ bool Solver::advance_towards(double time, const std::function<bool()>& stop) {
 double Solver::step(double limit) { return impl_->step(limit); }
 double Solver::time() const { return impl_->time(); }
 std::size_t Solver::particle_count() const { return impl_->particles().size(); }
-std::size_t Solver::boundary_particle_count() const { return impl_->boundary().positions.size(); }
+std::size_t Solver::boundary_particle_count() const { return impl_->boundary().positions().size(); }
 const SolverSettings& Solver::settings() const { return impl_->settings(); }
 const SolverStatistics& Solver::statistics() const { return impl_->statistics(); }
 std::size_t Solver::memory_bytes() const { return impl_->memory_bytes(); }
-std::vector<Vec3> Solver::boundary_positions() const { return impl_->boundary().positions; }
+std::vector<Vec3> Solver::boundary_positions() const { return impl_->boundary().positions(); }
 void Solver::save(StateWriter& writer) const { impl_->save(writer); }
 void Solver::restore(StateReader& reader) { impl_->restore(reader); }
 

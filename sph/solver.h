@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "sph/boundary_motion.h"
 #include "sph/state_archive.h"
 #include "sph/triangle_mesh.h"
 
@@ -105,7 +106,9 @@ struct Emitter {
 /// A wall: any open or closed triangle surface.
 struct Boundary {
   TriangleMesh mesh;
-  double slip = 0;  ///< 0: no-slip, 1: free slip; between: the share of wall friction taken away.
+  double slip = 0;                       ///< 0: no-slip, 1: free slip; between: the share of wall friction taken away.
+  BoundaryMotion motion{};               ///< Of the mesh; by default it rests.
+  Vec3 surface_velocity = Vec3::Zero();  ///< Of the surface along the wall, as of a conveyor belt (m/s); turns with it.
 };
 
 /// Everything a simulation starts from.
@@ -142,8 +145,9 @@ struct TimeStepReport {
 struct SolverStatistics {
   std::uint64_t steps = 0;
   std::uint64_t list_rebuilds = 0;
-  std::uint64_t left_domain = 0;     ///< Particles removed because they left the domain.
-  std::uint64_t wall_crossings = 0;  ///< Particle paths that would have passed a wall and were put back.
+  std::uint64_t left_domain = 0;       ///< Particles removed because they left the domain.
+  std::uint64_t wall_crossings = 0;    ///< Particle paths that would have passed a wall and were put back.
+  std::uint64_t squeezed_through = 0;  ///< Particles that moving walls left no room: they passed one.
   std::uint64_t emitted = 0;
   std::uint64_t steps_limited_by_acoustic = 0, steps_limited_by_viscous = 0, steps_limited_by_force = 0;
   std::uint64_t viscosity_iterations = 0;  ///< Of the implicit viscosity, in all steps.
@@ -153,7 +157,7 @@ struct SolverStatistics {
 
   template <class Archive>
   void visit(Archive& archive) {
-    archive(steps, list_rebuilds, left_domain, wall_crossings, emitted);
+    archive(steps, list_rebuilds, left_domain, wall_crossings, squeezed_through, emitted);
     archive(steps_limited_by_acoustic, steps_limited_by_viscous, steps_limited_by_force, last_step);
     archive(viscosity_iterations, viscosity_tolerance);
     archive(seconds_neighbors, seconds_forces, seconds_viscosity, seconds_integration);

@@ -63,8 +63,9 @@ class Stopwatch {
 };
 
 // Settings with the automatic values, for members that are initialised from them.
-SolverSettings complete_settings(const SimulationSetup& setup, const std::vector<FluidPoint>& points) {
-  double speed = 0;
+SolverSettings complete_settings(const SimulationSetup& setup, const std::vector<FluidPoint>& points,
+                                 double wall_speed) {
+  double speed = wall_speed;
   for (const FluidPoint& p : points) speed = std::max(speed, p.velocity.norm());
   return with_automatic_values(setup, bounding_box(points), speed);
 }
@@ -74,17 +75,17 @@ SolverSettings complete_settings(const SimulationSetup& setup, const std::vector
 SolverImpl::SolverImpl(SimulationSetup setup)
     : settings_((check_setup(setup), setup.settings)), periodic_(settings_.domain, settings_.periodic) {
   wall_kernel_ = make_wall_kernel(settings_);
-  boundary_ = sample_boundaries(setup.boundaries, settings_, wall_kernel_, periodic_);
-  const std::vector<FluidPoint> points = fill_bodies(setup.bodies, settings_.spacing, boundary_.positions, periodic_);
-  settings_ = complete_settings(setup, points);
+  boundary_ = BoundaryParticles(setup.boundaries, settings_, wall_kernel_, periodic_);
+  const std::vector<FluidPoint> points = fill_bodies(setup.bodies, settings_.spacing, boundary_.positions(), periodic_);
+  settings_ = complete_settings(setup, points, boundary_.greatest_speed());
   coefficients_ = PairCoefficients(settings_, wall_kernel_);
   mass_ = settings_.rest_density * std::pow(settings_.spacing, 3);
   smoothing_length_ = 0.5 * settings_.support_radius * settings_.spacing;
-  origin_ = middle(points, boundary_.positions, setup.emitters);
+  origin_ = middle(points, boundary_.positions(), setup.emitters);
   for (int a = 0; a < 3; ++a) {
     if (periodic_.along(a)) origin_[a] = 0.5 * (settings_.domain.min[a] + settings_.domain.max[a]);
   }
-  place_at_origin(boundary_, origin_, wall_kernel_);
+  boundary_.place_at_origin(origin_);
   for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
     emitters_.emplace_back(setup.emitters[e], settings_.spacing, "emitter " + std::to_string(e + 1));
   }
@@ -124,6 +125,7 @@ double SolverImpl::step(double limit) {
   statistics_.last_step = choose_step(limit);
   const double dt = statistics_.last_step.step;
   if (is_implicit()) kick_implicitly(dt);
+  boundary_.move_to(time_ + dt);
   kick_and_drift(dt);
   time_ += dt;
   pour_emitters();
@@ -142,7 +144,8 @@ TimeStepReport SolverImpl::choose_step(double limit) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double h = smoothing_length_;
   TimeStepReport report;
-  report.acoustic = settings_.acoustic_cfl * h / (settings_.speed_of_sound + greatest_speed_);
+  report.acoustic =
+      settings_.acoustic_cfl * h / (settings_.speed_of_sound + std::max(greatest_speed_, boundary_.greatest_speed()));
   report.viscous = is_implicit() ? infinity : viscous_step_limit(settings_, settings_.viscosity);
   report.force = greatest_acceleration_ > 0 ? settings_.force_cfl * std::sqrt(h / greatest_acceleration_) : infinity;
   report.step = infinity;
@@ -176,8 +179,7 @@ void SolverImpl::fill_pack(std::size_t i, double dt) {
                          v.y(), v.z(), compression, coefficients_.pack_pressure(compression)};
 }
 
-void SolverImpl::drift_particle(std::size_t i, double dt, const std::vector<std::uint32_t>& triangles,
-                                std::uint64_t& crossings) {
+BoundaryParticles::Hold SolverImpl::drift_particle(std::size_t i, std::size_t cluster, double dt) {
   const ParticleRates& rate = particles_.rates[i];
   Vec3& velocity = particles_.velocities[i];
   if (!is_implicit()) velocity += 0.5 * dt * (Vec3(rate.ax, rate.ay, rate.az) + settings_.gravity);
@@ -185,17 +187,10 @@ void SolverImpl::drift_particle(std::size_t i, double dt, const std::vector<std:
   Vec3 motion = dt * velocity;
   if (!particles_.shifts.empty()) motion += dt * particles_.shifts[i].cast<double>();
 
-  const Vec3 target = particles_.positions[i] + motion;
-  if (!triangles.empty() &&
-      particles_.wall_distances[i] < coverage_radius * wall_kernel_.sample_spacing + motion.norm()) {
-    const WallGuard::Crossing crossing = boundary_.guard.check(particles_.positions[i], target, triangles);
-    if (crossing.crossed) {
-      velocity -= std::min(0.0, velocity.dot(crossing.normal)) * crossing.normal;
-      ++crossings;
-      return;
-    }
-  }
+  Vec3 target = particles_.positions[i] + motion;
+  const auto hold = boundary_.hold(particles_.positions[i], cluster, particles_.wall_distances[i], target, velocity);
   particles_.positions[i] = target;
+  return hold;
 }
 
 void SolverImpl::kick_implicitly(double dt) {
@@ -207,7 +202,7 @@ void SolverImpl::kick_implicitly(double dt) {
                                                                      {particles_.packs,
                                                                       &clusters_,
                                                                       &fluid_lists_,
-                                                                      boundary_.packs,
+                                                                      boundary_.packs(),
                                                                       &wall_lists_,
                                                                       {},
                                                                       particles_.rates,
@@ -225,18 +220,21 @@ void SolverImpl::kick_implicitly(double dt) {
 
 void SolverImpl::kick_and_drift(double dt) {
   const Stopwatch watch(statistics_.seconds_integration);
-  std::uint64_t crossings = 0;
+  std::uint64_t crossings = 0, squeezed = 0;
   bool outside = false;
-#pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size())) reduction(+ : crossings) reduction(|| : outside)
+#pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size())) reduction(+ : crossings, squeezed) reduction(|| : outside)
   for (std::size_t c = 0; c < clusters_.size(); ++c) {
     const PointCluster& cluster = clusters_[c];
     for (std::size_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
-      drift_particle(i, dt, wall_triangles_[c], crossings);
+      const BoundaryParticles::Hold hold = drift_particle(i, c, dt);
+      crossings += hold.held;
+      squeezed += hold.squeezed_through;
       fill_pack(i, dt);
       outside = outside || outside_domain(particles_.positions[i]);
     }
   }
   statistics_.wall_crossings += crossings;
+  statistics_.squeezed_through += squeezed;
   some_outside_ = outside;
 }
 
@@ -288,9 +286,11 @@ void SolverImpl::remove_outside() {
 
 bool SolverImpl::lists_outdated() const {
   if (particles_changed_) return true;
-  // Fluid pairs see only motion relative to each other, so a common shift is taken off; walls rest, so a particle may
-  // come nearer to them by the whole skin.
+  // Fluid pairs see only motion relative to each other, so a common shift is taken off. A particle may come nearer to a
+  // wall that rests by the whole skin, to one that moves by what that one's way leaves of it.
   const float skin = static_cast<float>(settings_.skin * settings_.spacing);
+  const float wall_skin = skin - static_cast<float>(boundary_.shift_since_build());
+  if (wall_skin <= 0) return true;
   Eigen::Vector3f low = Eigen::Vector3f::Constant(1e30F), high = -low;
   const auto moved = [&](std::size_t cluster, std::uint32_t lane) {
     const FluidPack& p = particles_.packs[clusters_[cluster].first + lane];
@@ -318,7 +318,7 @@ bool SolverImpl::lists_outdated() const {
   for (int a = 0; a < 3; ++a) {
     if (periodic_.along(a) && farthest[a] > 0.5 * periodic_.period()[a]) return true;
   }
-  const bool walls_safe = boundary_.positions.empty() || farthest.norm() < skin;
+  const bool walls_safe = boundary_.empty() || farthest.norm() < wall_skin;
   if (walls_safe && (high - low).norm() < skin) return false;
   // The box of displacements is too coarse to tell: look at each.
   const Eigen::Vector3f common = 0.5F * (low + high);
@@ -333,7 +333,7 @@ bool SolverImpl::lists_outdated() const {
       absolute2 = std::max(absolute2, d.squaredNorm());
     }
   }
-  if (!boundary_.positions.empty() && absolute2 >= skin * skin) return true;
+  if (!boundary_.empty() && absolute2 >= wall_skin * wall_skin) return true;
   return relative2 >= 0.25F * skin * skin;
 }
 
@@ -358,28 +358,28 @@ void SolverImpl::build_lists(const PointView& places) {
   const Eigen::Vector3f period = periodic_.period().cast<float>();
   fluid_lists_.build(clusters_, clusters_, radius, period);
   const auto wall_reach = static_cast<float>(wall_kernel_.support + settings_.skin * settings_.spacing);
-  wall_lists_.build(clusters_, boundary_.clusters, wall_reach, period);
+  boundary_.mark_build(clusters_.size());
+  wall_lists_.build(clusters_, boundary_.clusters(), wall_reach, period);
   collect_wall_triangles();
 }
 
 void SolverImpl::collect_wall_triangles() {
-  wall_triangles_.resize(clusters_.size());
-  // Up to the next rebuild no particle moves farther than the skin.
-  const Vec3 margin = Vec3::Constant(1.1 * settings_.skin * settings_.spacing + 0.5 * settings_.spacing);
+  // Up to the next rebuild no particle moves farther than the skin and one step, whose length the sound limits.
+  const double margin = 1.1 * settings_.skin * settings_.spacing +
+                        std::max(0.5 * settings_.spacing, 0.6 * settings_.acoustic_cfl * smoothing_length_);
 #pragma omp parallel for schedule(dynamic, 64) num_threads(threads_for(particles_.size()))
   for (std::size_t c = 0; c < clusters_.size(); ++c) {
-    wall_triangles_[c].clear();
     if (wall_lists_.of_cluster(c).empty()) continue;
     const Vec3 low = origin_ + clusters_[c].box_min.cast<double>(),
                high = origin_ + clusters_[c].box_max.cast<double>();
-    boundary_.guard.query(low - margin, high + margin, wall_triangles_[c]);
+    boundary_.collect_triangles(c, low, high, margin);
   }
 }
 
 void SolverImpl::evaluate_forces() {
   const Stopwatch watch(statistics_.seconds_forces);
   const PairData data{particles_.packs,  &clusters_,
-                      &fluid_lists_,     boundary_.packs,
+                      &fluid_lists_,     boundary_.packs(),
                       &wall_lists_,      static_cast<float>(statistics_.last_step.step),
                       particles_.rates,  particles_.wall_distances,
                       particles_.shifts, !is_implicit()};
@@ -461,15 +461,15 @@ void SolverImpl::restore(StateReader& reader) {
   visit(reader, places);
   if (!particles_.is_consistent() || places.size() != particles_.size())
     throw StateError("the saved state of the solver contradicts itself");
+  boundary_.move_to(boundary_.build_time());
   build_lists(std::span<const Eigen::Vector3f>(places));
+  boundary_.move_to(time_);
 }
 
 std::size_t SolverImpl::memory_bytes() const {
   std::size_t bytes = const_cast<ParticleArrays&>(particles_).memory_bytes() + boundary_.memory_bytes() +
                       implicit_viscosity_.memory_bytes() + curve_.memory_bytes() + clusters_.memory_bytes() +
-                      fluid_lists_.memory_bytes() + wall_lists_.memory_bytes() +
-                      wall_triangles_.capacity() * sizeof(decltype(wall_triangles_)::value_type);
-  for (const auto& triangles : wall_triangles_) bytes += triangles.capacity() * sizeof(std::uint32_t);
+                      fluid_lists_.memory_bytes() + wall_lists_.memory_bytes();
   return bytes;
 }
 

@@ -47,7 +47,7 @@ class SolverImpl {
     archive.section("solver");
     archive(time_, next_id_, particles_);
     archive.each(emitters_);
-    archive(places, particles_changed_, builds_since_sort_);
+    archive(places, boundary_.build_time(), particles_changed_, builds_since_sort_);
     archive(greatest_speed_, greatest_acceleration_, some_outside_, statistics_);
   }
 
@@ -58,7 +58,7 @@ class SolverImpl {
   /// of.
   void kick_and_drift(double dt);
   bool is_implicit() const { return settings_.viscosity_solver == ViscositySolver::implicit; }
-  void drift_particle(std::size_t i, double dt, const std::vector<std::uint32_t>& triangles, std::uint64_t& crossings);
+  BoundaryParticles::Hold drift_particle(std::size_t i, std::size_t cluster, double dt);
   void fill_pack(std::size_t i, double dt);
   void pour_emitters();
   bool outside_domain(const Vec3& p) const;
@@ -92,8 +92,7 @@ class SolverImpl {
   HilbertOrder curve_;
   PointClusters clusters_;
   NeighborLists fluid_lists_, wall_lists_;
-  std::vector<std::vector<std::uint32_t>> wall_triangles_;  // one list a cluster; empty away from walls
-  bool particles_changed_ = true;                           // added or removed since the last build
+  bool particles_changed_ = true;  // added or removed since the last build
   int builds_since_sort_ = 0;
 
   ImplicitViscosity implicit_viscosity_;

@@ -153,6 +153,37 @@ def bar(radius=0.09, half=0.24, sides=12):
     mesh.write("bar.obj", f"A closed bar of radius {radius} m and length {2 * half} m along the z axis")
 
 
+def cylinder(name, title, lid, around=48):
+    """Around the y axis, radius 1, from y = 0 to 1."""
+    mesh = Mesh()
+
+    def point(j, y):
+        a = 2 * math.pi * j / around
+        return (round(math.cos(a), 6) + 0.0, y, round(-math.sin(a), 6) + 0.0)
+
+    for j in range(around):
+        mesh.face(point(j, 0.0), point(j + 1, 0.0), point(j + 1, 1.0), point(j, 1.0))
+        mesh.face((0.0, 0.0, 0.0), point(j + 1, 0.0), point(j, 0.0))
+        if lid:
+            mesh.face((0.0, 1.0, 0.0), point(j, 1.0), point(j + 1, 1.0))
+    mesh.write(name, title)
+
+
+def paddle(width=0.5, height=0.16, shaft=0.06, top=0.6, thick=0.05):
+    """A blade across the y axis, from y = 0 up, on a shaft; closed."""
+    mesh, w, s, z = Mesh(), width / 2, shaft / 2, thick / 2
+    blocks = [((-w, 0.0), (-s, height)), ((-s, 0.0), (s, height)), ((s, 0.0), (w, height)), ((-s, height), (s, top))]
+    for (x0, y0), (x1, y1) in blocks:
+        mesh.face((x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z))
+        mesh.face((x1, y0, -z), (x0, y0, -z), (x0, y1, -z), (x1, y1, -z))
+    # Corners of the outline, seen from +z.
+    outline = [(-w, 0.0), (-s, 0.0), (s, 0.0), (w, 0.0), (w, height), (s, height), (s, top), (-s, top), (-s, height),
+               (-w, height)]
+    for (x0, y0), (x1, y1) in zip(outline, outline[1:] + outline[:1]):
+        mesh.face((x0, y0, z), (x0, y0, -z), (x1, y1, -z), (x1, y1, z))
+    mesh.write("paddle.obj", f"A paddle {width} m wide and {thick} m thick on a shaft along the y axis")
+
+
 if __name__ == "__main__":
     stairs()
     stairs_floor()
@@ -162,3 +193,6 @@ if __name__ == "__main__":
     capsule()
     bar()
     dish()
+    cylinder("cylinder.obj", "A closed cylinder around the y axis, radius 1 m, height 1 m", lid=True)
+    cylinder("tub.obj", "A cylinder around the y axis without a lid, radius 1 m, height 1 m", lid=False)
+    paddle()

@@ -75,6 +75,10 @@ SourceStatistics SimulationSource::statistics() const {
       settings.support_radius * settings.spacing, settings.speed_of_sound, settings.max_speed, settings.viscosity,
       viscosity_solver(settings, solver), solver.steps_limited_by_acoustic, solver.steps_limited_by_viscous,
       solver.steps_limited_by_force, static_cast<double>(solver_.memory_bytes()) / 1e6);
+  if (solver.squeezed_through > 0) {
+    statistics.summary +=
+        fmt::format("; {} particles passed moving walls that left them no room", solver.squeezed_through);
+  }
   return statistics;
 }
 

@@ -155,6 +155,11 @@ TEST(SceneFileErrors, Contradictions) {
       HasSubstr("particles.motion.axis is zero"));
   EXPECT_THAT(error_of(small_scene(R"("simulation": {"domain": {"min": [0,0,0], "max": [1,-1,1]}})")),
               HasSubstr("simulation.domain.min must not be greater"));
+  EXPECT_THAT(error_of(small_scene(R"("boundaries": [{"file": "meshes/stairs.obj",
+                                        "keyframes": [{"time": 1}, {"time": 1}]}])")),
+              HasSubstr("boundaries[0].keyframes has an entry 1 whose time is not later"));
+  EXPECT_THAT(error_of(small_scene(R"("boundaries": [{"file": "meshes/stairs.obj", "keyframes": [{}]}])")),
+              HasSubstr("boundaries[0].keyframes[0].time is missing"));
   EXPECT_THAT(error_of(small_scene(R"("simulation": {"periodic": [true, false]})")),
               HasSubstr("simulation.periodic is a list; expected 3 times true or false"));
   EXPECT_THAT(error_of(small_scene(R"("simulation": {"periodic": [true, false, false]},

@@ -73,6 +73,25 @@ std::vector<Case> cases() {
          setup.settings.xsph = 0.3;
          return setup;
        }},
+      {"MovingWalls",
+       [] {
+         SimulationSetup setup = splash();
+         Boundary paddle{closed_box({0.14, 0, 0.1}, {0.16, 0.3, 0.2}), 0};
+         paddle.motion.pivot = {0.15, 0, 0.15};
+         paddle.motion.keyframes = {{0.01, Vec3::Zero(), Vec3::Zero()}, {0.08, {0, 0.05, 0}, {0, 90, 0}}};
+         setup.boundaries.push_back(paddle);
+         setup.boundaries[0].surface_velocity = {0.3, 0, 0};
+         return setup;
+       }},
+      {"Periodic",
+       [] {
+         SimulationSetup setup = splash();
+         setup.settings.domain = {{0, -1, 0}, {0.3, 1, 0.3}};
+         setup.settings.periodic = {true, false, true};
+         setup.bodies[0].velocity = {2, 0, 1};
+         setup.boundaries = {{sheet(1, 0), 0.5}};
+         return setup;
+       }},
       {"ContinuityDensity",
        [] {
          SimulationSetup setup = splash();

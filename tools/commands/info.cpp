@@ -1,6 +1,8 @@
 // flowskin info FILE...: what is in a file, and whether it is sound.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scenes/scene_file.h"
 #include "tools/commands/commands.h"
 #include "tools/errors.h"
@@ -18,12 +20,14 @@ FileInfo describe_scene(const std::filesystem::path& file) {
   const char* name = source == Source::simulation   ? "a simulation"
                      : source == Source::prescribed ? "prescribed motion"
                                                     : "a recorded sequence";
+  const auto moving = std::count_if(scene.boundaries.begin(), scene.boundaries.end(),
+                                    [](const scenes::BoundarySpec& wall) { return wall.boundary.motion.moves(); });
   FileInfo info;
   info.lines = {fmt::format("scene \"{}\"{}{}", scene.name, scene.description.empty() ? "" : ": ", scene.description),
                 fmt::format("{} frames at {} per second, particles from {}, spacing {} m", scene.frames,
                             scene.frame_rate, name, scene.particles.spacing),
-                fmt::format("{} fluid bodies, {} emitters, {} walls", scene.bodies.size(), scene.emitters.size(),
-                            scene.boundaries.size()),
+                fmt::format("{} fluid bodies, {} emitters, {} walls{}", scene.bodies.size(), scene.emitters.size(),
+                            scene.boundaries.size(), moving > 0 ? fmt::format(", {} of them moving", moving) : ""),
                 fmt::format("velocity method {}, texture {} ({} mapping)", scene.tracking.velocity, scene.texture.image,
                             scene.texture.mapping)};
   return info;

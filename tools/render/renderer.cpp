@@ -78,7 +78,12 @@ std::vector<Vec3> points_to_see(const std::vector<scenes::BoundarySpec>& boundar
   std::vector<Vec3> points;
   for (const auto& boundary : boundaries) {
     if (!boundary.visible) continue;
-    for (const Vec3& position : boundary.boundary.mesh.positions) points.push_back(position);
+    const auto see = [&](double time) {
+      for (const Vec3& position : sph::placed(boundary.boundary.mesh, boundary.boundary.motion, time).positions)
+        points.push_back(position);
+    };
+    if (!boundary.boundary.motion.moves()) see(0);
+    for (const sph::Keyframe& key : boundary.boundary.motion.keyframes) see(key.time);
   }
   for (int k = 0; k < 8; ++k) {
     points.emplace_back(k & 1 ? fluid.max.x() : fluid.min.x(), k & 2 ? fluid.max.y() : fluid.min.y(),
@@ -105,6 +110,8 @@ struct Renderer::Impl {
        const std::vector<Vec3>& seen, const sph::Box& box);
 
   Image draw(const Subject& subject) const;
+  /// Puts walls that move to where they are at `time` (s).
+  void place_walls(double time);
   Style style() const { return style_; }
 
   TraceDevice device;
@@ -112,7 +119,7 @@ struct Renderer::Impl {
   MipMap texture;
 
  private:
-  void add_walls(const std::vector<scenes::BoundarySpec>& boundaries);
+  void add_walls(const std::vector<scenes::BoundarySpec>& boundaries, double time);
   void keep_static_samples();
 
   std::size_t light_index(int x, int y, int sample) const {
@@ -139,6 +146,8 @@ struct Renderer::Impl {
   Camera camera_;
   TraceScene walls_;
   std::vector<Vec3f> wall_reflectance_;
+  std::vector<scenes::BoundarySpec> moving_scene_;  // all walls where some of them move, else empty
+  double wall_time_ = 0;                            // s
   int sky_rays_;
   float step_off_;  // m: how far from a surface a secondary ray starts
   std::vector<Vec2f> pixel_offsets_;
@@ -163,7 +172,11 @@ Renderer::Impl::Impl(const scenes::RenderSpec& spec, const std::vector<scenes::B
   for (int i = 0; i < 3; ++i) ground_.reflectance[i] = float(spec.ground_color[std::size_t(i)]);
   ground_.fade_start = 0.6f * size;
   ground_.fade_end = 3.5f * size;
-  add_walls(boundaries);
+  add_walls(boundaries, wall_time_);
+  if (std::any_of(boundaries.begin(), boundaries.end(),
+                  [](const auto& b) { return b.visible && b.boundary.motion.moves(); })) {
+    moving_scene_ = boundaries;
+  }
   const int sets = interleaved_sets * spec.samples;
   pixel_offsets_ = scrambled_sobol(spec.samples, 1);
   sun_directions_ = cone_directions(sets, 2, lighting_.sun_direction, lighting_.sun_radius);
@@ -171,20 +184,29 @@ Renderer::Impl::Impl(const scenes::RenderSpec& spec, const std::vector<scenes::B
   keep_static_samples();
 }
 
-void Renderer::Impl::add_walls(const std::vector<scenes::BoundarySpec>& boundaries) {
+void Renderer::Impl::place_walls(double time) {
+  if (moving_scene_.empty() || time == wall_time_) return;
+  wall_time_ = time;
+  walls_ = TraceScene(device);
+  wall_reflectance_.clear();
+  add_walls(moving_scene_, time);
+  keep_static_samples();
+}
+
+void Renderer::Impl::add_walls(const std::vector<scenes::BoundarySpec>& boundaries, double time) {
   for (const auto& boundary : boundaries) {
     if (!boundary.visible) continue;
     std::vector<Vec3f> positions;
-    for (const Vec3& position : boundary.boundary.mesh.positions)
-      positions.push_back((position - origin).cast<float>());
-    for (const auto& triangle : boundary.boundary.mesh.triangles) {
+    const sph::TriangleMesh mesh = sph::placed(boundary.boundary.mesh, boundary.boundary.motion, time);
+    for (const Vec3& position : mesh.positions) positions.push_back((position - origin).cast<float>());
+    for (const auto& triangle : mesh.triangles) {
       for (const int corner : triangle) {
         if (corner < 0 || std::size_t(corner) >= positions.size()) {
           throw InputError(fmt::format("a wall to draw names vertex {} of {}", corner, positions.size()));
         }
       }
     }
-    walls_.add_triangles(positions, boundary.boundary.mesh.triangles);
+    walls_.add_triangles(positions, mesh.triangles);
     wall_reflectance_.emplace_back(float(boundary.color[0]), float(boundary.color[1]), float(boundary.color[2]));
   }
   walls_.commit();
@@ -367,10 +389,12 @@ Renderer::Renderer(const scenes::RenderSpec& settings, const std::vector<scenes:
 Renderer::~Renderer() = default;
 
 Image Renderer::draw(const SurfaceFrame& frame) const {
+  impl_->place_walls(frame.time);
   return impl_->draw(SurfaceSubject(impl_->device, frame, impl_->style(), impl_->texture, impl_->origin));
 }
 
 Image Renderer::draw(const ParticleFrame& frame) const {
+  impl_->place_walls(frame.state.time);
   return impl_->draw(ParticleSubject(impl_->device, frame, impl_->origin));
 }
 

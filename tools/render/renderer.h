@@ -10,7 +10,7 @@
 
 namespace flowskin::tools {
 
-/// Draws the frames of one scene: walls, ground and light are built once.
+/// Draws the frames of one scene: walls, ground and light are built once; walls that move, anew for each time.
 class Renderer {
  public:
   /// `texture` is what corner_uvs refer to. A camera whose position is all zero is placed to see the walls and `fluid`.
@@ -18,7 +18,8 @@ class Renderer {
            const Image& texture, const sph::Box& fluid);
   ~Renderer();
 
-  /// The surface in the style of the settings. The same bytes at any thread count.
+  /// The surface in the style of the settings, with the walls where they are at the frame's time. The same bytes at any
+  /// thread count.
   Image draw(const SurfaceFrame& frame) const;
   /// The particles as balls in their colours.
   Image draw(const ParticleFrame& frame) const;
