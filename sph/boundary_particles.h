@@ -14,11 +14,12 @@ namespace flowskin::sph {
 
 /// Boundary particles of all walls in the order of a space-filling curve, and the triangles they were made from.
 struct BoundaryParticles {
-  std::vector<Vec3> positions;  ///< m
-  std::vector<double> volumes;  ///< m^3; empty once they are in the packs
-  std::vector<double> slips;    ///< 0 to 1; empty once they are in the packs
-  std::vector<WallPack> packs;  ///< Positions relative to the origin.
-  PointClusters clusters;       ///< Over the packs' positions.
+  std::vector<Vec3> positions;   ///< m
+  std::vector<double> volumes;   ///< m^3; empty once they are in the packs
+  std::vector<double> slips;     ///< 0 to 1; empty once they are in the packs
+  std::vector<float> adhesions;  ///< Adhesion times area (m^2) in the order of the packs; empty where no wall attracts.
+  std::vector<WallPack> packs;   ///< Positions relative to the origin.
+  PointClusters clusters;        ///< Over the packs' positions.
   WallGuard guard;
 
   std::size_t memory_bytes() const;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "sph/surface_tension.h"
+
 namespace flowskin::sph {
 
 namespace {
@@ -32,6 +34,7 @@ void check_settings(const SolverSettings& s) {
   require(s.support_radius >= 1.5 && s.support_radius <= 4, "support_radius", s.support_radius, "1.5 to 4 spacings");
   require(positive(s.rest_density), "rest_density", s.rest_density, "a density greater than 0 kg/m^3");
   require(not_negative(s.viscosity), "viscosity", s.viscosity, "0 m^2/s or more");
+  require(not_negative(s.surface_tension), "surface_tension", s.surface_tension, "0 N/m or more");
   require(s.gravity.allFinite(), "gravity", s.gravity.norm(), "finite numbers");
   require(not_negative(s.max_speed), "max_speed", s.max_speed, "0 (automatic) or a speed in m/s");
   require(not_negative(s.speed_of_sound), "speed_of_sound", s.speed_of_sound, "0 (automatic) or a speed in m/s");
@@ -40,6 +43,7 @@ void check_settings(const SolverSettings& s) {
   require(positive(s.acoustic_cfl), "acoustic_cfl", s.acoustic_cfl, "a number greater than 0");
   require(positive(s.viscous_cfl), "viscous_cfl", s.viscous_cfl, "a number greater than 0");
   require(positive(s.force_cfl), "force_cfl", s.force_cfl, "a number greater than 0");
+  require(positive(s.capillary_cfl), "capillary_cfl", s.capillary_cfl, "a number greater than 0");
   require(positive(s.max_time_step), "max_time_step", s.max_time_step, "a time greater than 0 s");
   require(s.viscosity_tolerance >= 1e-6 && s.viscosity_tolerance <= 0.1, "viscosity_tolerance", s.viscosity_tolerance,
           "1e-6 to 0.1");
@@ -98,6 +102,14 @@ void check_setup(const SimulationSetup& setup) {
       throw SettingsError(name + ": slip = " + number(setup.boundaries[b].slip) +
                           ": expected 0 (no-slip) to 1 (free slip)");
     }
+    const double adhesion = setup.boundaries[b].adhesion;
+    if (!(adhesion >= 0 && adhesion <= 2)) {
+      throw SettingsError(name + ": adhesion = " + number(adhesion) + ": expected 0 (not wetted) to 2");
+    }
+    if (adhesion > 0 && !(setup.settings.surface_tension > 0)) {
+      throw SettingsError(name + ": adhesion = " + number(adhesion) +
+                          " is a share of the surface tension, which is 0: set surface_tension too");
+    }
   }
 }
 
@@ -130,7 +142,7 @@ SolverSettings with_automatic_values(const SimulationSetup& setup, const Box& fl
     // Fluid at rest without gravity: any speed of sound will do.
     if (s.max_speed == 0) s.max_speed = 50 * s.spacing;
   }
-  if (s.speed_of_sound == 0) s.speed_of_sound = 10 * s.max_speed;
+  if (s.speed_of_sound == 0) s.speed_of_sound = std::max(10 * s.max_speed, capillary_speed_of_sound(s));
   if (s.viscosity_solver == ViscositySolver::automatic) {
     const double h = s.support_radius * s.spacing / 2;
     const double longest = std::min(s.acoustic_cfl * h / s.speed_of_sound, s.max_time_step);

@@ -58,6 +58,7 @@ struct SolverSettings {
   double rest_density = 1000;  ///< kg/m^3
   double viscosity = 1e-6;     ///< Kinematic viscosity (m^2/s), laminar.
   ViscosityForm viscosity_form = ViscosityForm::monaghan;
+  double surface_tension = 0;  ///< N/m; 0: none
   ViscositySolver viscosity_solver = ViscositySolver::automatic;
   double viscosity_tolerance = 1e-3;    ///< Implicit: error of the velocities over their change in the step.
   int viscosity_max_iterations = 1000;  ///< Implicit: more mean failure.
@@ -70,6 +71,7 @@ struct SolverSettings {
   double acoustic_cfl = 0.4;       ///< dt <= acoustic_cfl h / (c + |v|), h the smoothing length
   double viscous_cfl = 0.125;      ///< dt <= viscous_cfl h^2 / nu; monaghan, stiffer along the pair: half of it
   double force_cfl = 0.25;         ///< dt <= force_cfl sqrt(h / |a|)
+  double capillary_cfl = 0.5;      ///< dt <= capillary_cfl sqrt(rho h^3 / (2 pi gamma))
   double max_time_step = 1e9;      ///< s
   double skin = 0;                 ///< Skin of the Verlet lists, in spacings; 0: the recommended one.
   /// Particles that leave it along an axis that is not periodic are removed and counted; no limit along axes where min
@@ -105,7 +107,8 @@ struct Emitter {
 /// A wall: any open or closed triangle surface.
 struct Boundary {
   TriangleMesh mesh;
-  double slip = 0;  ///< 0: no-slip, 1: free slip; between: the share of wall friction taken away.
+  double slip = 0;      ///< 0: no-slip, 1: free slip; between: the share of wall friction taken away.
+  double adhesion = 0;  ///< Work of adhesion over 2 gamma: 0: not wetted, 0.5: contact angle 90 degrees, 1: wetted.
 };
 
 /// Everything a simulation starts from.
@@ -129,12 +132,12 @@ struct FluidState {
 
 /// Which limit set the time step, and all of them (s).
 struct TimeStepReport {
-  double step = 0, acoustic = 0, viscous = 0, force = 0;
-  std::string limited_by;  ///< "acoustic", "viscous", "force", "output" or "setting"
+  double step = 0, acoustic = 0, viscous = 0, force = 0, capillary = 0;
+  std::string limited_by;  ///< "acoustic", "viscous", "force", "capillary", "output" or "setting"
 
   template <class Archive>
   void visit(Archive& archive) {
-    archive(step, acoustic, viscous, force, limited_by);
+    archive(step, acoustic, viscous, force, capillary, limited_by);
   }
 };
 
@@ -148,13 +151,15 @@ struct SolverStatistics {
   std::uint64_t steps_limited_by_acoustic = 0, steps_limited_by_viscous = 0, steps_limited_by_force = 0;
   std::uint64_t viscosity_iterations = 0;  ///< Of the implicit viscosity, in all steps.
   double viscosity_tolerance = 0;          ///< Residual that the last implicit step asked for (m/s, root mean square).
+  std::uint64_t steps_limited_by_capillary = 0;
   TimeStepReport last_step;
   double seconds_neighbors = 0, seconds_forces = 0, seconds_viscosity = 0, seconds_integration = 0;
 
   template <class Archive>
   void visit(Archive& archive) {
     archive(steps, list_rebuilds, left_domain, wall_crossings, emitted);
-    archive(steps_limited_by_acoustic, steps_limited_by_viscous, steps_limited_by_force, last_step);
+    archive(steps_limited_by_acoustic, steps_limited_by_viscous, steps_limited_by_force, steps_limited_by_capillary);
+    archive(last_step);
     archive(viscosity_iterations, viscosity_tolerance);
     archive(seconds_neighbors, seconds_forces, seconds_viscosity, seconds_integration);
   }

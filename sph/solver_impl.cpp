@@ -78,6 +78,7 @@ SolverImpl::SolverImpl(SimulationSetup setup)
   const std::vector<FluidPoint> points = fill_bodies(setup.bodies, settings_.spacing, boundary_.positions, periodic_);
   settings_ = complete_settings(setup, points);
   coefficients_ = PairCoefficients(settings_, wall_kernel_);
+  surface_tension_ = SurfaceTension(settings_);
   mass_ = settings_.rest_density * std::pow(settings_.spacing, 3);
   smoothing_length_ = 0.5 * settings_.support_radius * settings_.spacing;
   origin_ = middle(points, boundary_.positions, setup.emitters);
@@ -135,6 +136,7 @@ double SolverImpl::step(double limit) {
   if (by == "acoustic") ++statistics_.steps_limited_by_acoustic;
   if (by == "viscous") ++statistics_.steps_limited_by_viscous;
   if (by == "force") ++statistics_.steps_limited_by_force;
+  if (by == "capillary") ++statistics_.steps_limited_by_capillary;
   return dt;
 }
 
@@ -145,6 +147,7 @@ TimeStepReport SolverImpl::choose_step(double limit) const {
   report.acoustic = settings_.acoustic_cfl * h / (settings_.speed_of_sound + greatest_speed_);
   report.viscous = is_implicit() ? infinity : viscous_step_limit(settings_, settings_.viscosity);
   report.force = greatest_acceleration_ > 0 ? settings_.force_cfl * std::sqrt(h / greatest_acceleration_) : infinity;
+  report.capillary = settings_.capillary_cfl * capillary_time(settings_);
   report.step = infinity;
   const auto apply = [&](double value, const char* name) {
     if (value < report.step) {
@@ -155,6 +158,7 @@ TimeStepReport SolverImpl::choose_step(double limit) const {
   apply(report.acoustic, "acoustic");
   apply(report.viscous, "viscous");
   apply(report.force, "force");
+  apply(report.capillary, "capillary");
   apply(settings_.max_time_step, "setting");
   apply(limit, "output");
   return report;
@@ -359,6 +363,11 @@ void SolverImpl::build_lists(const PointView& places) {
   fluid_lists_.build(clusters_, clusters_, radius, period);
   const auto wall_reach = static_cast<float>(wall_kernel_.support + settings_.skin * settings_.spacing);
   wall_lists_.build(clusters_, boundary_.clusters, wall_reach, period);
+  if (surface_tension_.active()) {
+    const auto reach = static_cast<float>(surface_tension_.reach + settings_.skin * settings_.spacing);
+    tension_lists_.build(clusters_, clusters_, reach, period);
+    if (!boundary_.adhesions.empty()) adhesion_lists_.build(clusters_, boundary_.clusters, reach);
+  }
   collect_wall_triangles();
 }
 
@@ -385,6 +394,11 @@ void SolverImpl::evaluate_forces() {
                       particles_.shifts, !is_implicit()};
   if (settings_.density_method == DensityMethod::summation) sum_densities(coefficients_, settings_, data);
   compute_forces(coefficients_, settings_, data);
+  if (surface_tension_.active()) {
+    surface_stresses_.resize(particles_.size());
+    add_surface_tension(surface_tension_, {particles_.packs, &clusters_, &tension_lists_, boundary_.packs,
+                                           boundary_.adhesions, &adhesion_lists_, surface_stresses_, particles_.rates});
+  }
 }
 
 void SolverImpl::finish_step(double dt) {
@@ -468,6 +482,8 @@ std::size_t SolverImpl::memory_bytes() const {
   std::size_t bytes = const_cast<ParticleArrays&>(particles_).memory_bytes() + boundary_.memory_bytes() +
                       implicit_viscosity_.memory_bytes() + curve_.memory_bytes() + clusters_.memory_bytes() +
                       fluid_lists_.memory_bytes() + wall_lists_.memory_bytes() +
+                      tension_lists_.memory_bytes() + adhesion_lists_.memory_bytes() +
+                      surface_stresses_.capacity() * sizeof(SurfaceStress) +
                       wall_triangles_.capacity() * sizeof(decltype(wall_triangles_)::value_type);
   for (const auto& triangles : wall_triangles_) bytes += triangles.capacity() * sizeof(std::uint32_t);
   return bytes;

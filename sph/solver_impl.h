@@ -14,6 +14,7 @@
 #include "sph/particle_arrays.h"
 #include "sph/periodic_box.h"
 #include "sph/solver.h"
+#include "sph/surface_tension.h"
 
 namespace flowskin::sph {
 
@@ -83,6 +84,8 @@ class SolverImpl {
   Vec3 origin_ = Vec3::Zero();  // of the float coordinates
   WallKernel wall_kernel_;
   PairCoefficients coefficients_;
+  SurfaceTension surface_tension_;
+  std::vector<SurfaceStress> surface_stresses_;  // empty without surface tension
   std::vector<JetEmitter> emitters_;
   BoundaryParticles boundary_;
   ParticleArrays particles_;
@@ -92,6 +95,7 @@ class SolverImpl {
   HilbertOrder curve_;
   PointClusters clusters_;
   NeighborLists fluid_lists_, wall_lists_;
+  NeighborLists tension_lists_, adhesion_lists_;            // empty without surface tension, without adhesion
   std::vector<std::vector<std::uint32_t>> wall_triangles_;  // one list a cluster; empty away from walls
   bool particles_changed_ = true;                           // added or removed since the last build
   int builds_since_sort_ = 0;
