@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "sph/emitter_outlet.h"
+#include "sph/fluid_sinks.h"
 #include "sph/surface_tension.h"
 
 namespace flowskin::sph {
@@ -59,11 +61,12 @@ void check_domain(const SolverSettings& s) {
       throw SettingsError("the domain's min corner must not be greater than its max corner along " + axis);
     }
     // From here on no particle meets two images of another one.
-    const double shortest = 2 * s.support_radius * s.spacing;
+    const double reach = std::max(s.support_radius * s.spacing, SurfaceTension(s).reach);
+    const double shortest = 2 * reach;
     if (s.periodic[a] && length < shortest * (1 - 1e-9)) {
       throw SettingsError("the domain is periodic along " + axis + ", but only " + number(length) +
-                          " m long; expected at least twice the support radius, " + number(shortest) +
-                          " m: a longer domain or a smaller spacing");
+                          " m long; expected at least twice the support radius (with surface tension: six spacings), " +
+                          number(shortest) + " m: a longer domain or a smaller spacing");
     }
   }
 }
@@ -93,6 +96,13 @@ void check_setup(const SimulationSetup& setup) {
   }
   for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
     check_mesh(setup.bodies[b].mesh, "fluid body " + std::to_string(b + 1));
+  }
+  for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
+    check_mesh(setup.emitters[e].mesh, "emitter " + std::to_string(e + 1));
+  }
+  for (std::size_t k = 0; k < setup.sinks.size(); ++k) {
+    check_mesh(setup.sinks[k].mesh, "sink " + std::to_string(k + 1));
+    check_sink(setup.sinks[k], "sink " + std::to_string(k + 1));
   }
   for (std::size_t b = 0; b < setup.boundaries.size(); ++b) {
     const std::string name = "boundary " + std::to_string(b + 1);

@@ -51,6 +51,8 @@ void for_each_column(const FrameRow& row, Visit visit) {
   visit("mean_density_error", row.mean_density_error);
   visit("max_density_error", row.max_density_error);
   visit("left_domain", row.left_domain);
+  visit("emitted", row.emitted);
+  visit("drained", row.drained);
   visit("wall_crossings", row.wall_crossings);
   visit("seconds_source", row.seconds_source);
   visit("seconds_tracking", row.seconds_tracking);

@@ -36,7 +36,7 @@ struct FrameRow {
   std::uint64_t steps = 0;                   ///< solver steps since the start
   double time_step = 0;                      ///< s, the last one
   double mean_density_error = 0, max_density_error = 0;
-  std::uint64_t left_domain = 0, wall_crossings = 0;  ///< since the start
+  std::uint64_t left_domain = 0, emitted = 0, drained = 0, wall_crossings = 0;  ///< since the start
   double seconds_source = 0, seconds_tracking = 0, seconds_topology = 0, seconds_writing = 0, seconds_pictures = 0,
          seconds_statistics = 0;
 };
