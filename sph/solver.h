@@ -106,7 +106,7 @@ struct Emitter {
   Shape shape = Shape::disc;
   double width = 0, height = 0;     ///< Rectangle: edges across and along `up` (m).
   Vec3 up = Vec3::Zero();           ///< Rectangle: direction of the edge `height`; zero: z for jets along y, else y.
-  TriangleMesh mesh;                ///< Mesh: its shadow along the direction pours, from its foremost point on (m).
+  TriangleMesh mesh{};              ///< Mesh: its shadow along the direction pours, from its foremost point on (m).
   std::uint64_t max_particles = 0;  ///< Pours whole layers up to so many particles; 0: any number.
 };
 
