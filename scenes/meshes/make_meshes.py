@@ -153,6 +153,19 @@ def bar(radius=0.09, half=0.24, sides=12):
     mesh.write("bar.obj", f"A closed bar of radius {radius} m and length {2 * half} m along the z axis")
 
 
+def star(outer=0.06, inner=0.03, points=5):
+    """A flat star about the y axis, facing up: the outline of an outlet."""
+    mesh = Mesh()
+
+    def corner(k):
+        r, a = (inner if k % 2 else outer), math.pi * k / points
+        return (round(r * math.cos(a), 6), 0.0, round(-r * math.sin(a), 6))
+
+    for k in range(2 * points):
+        mesh.face((0.0, 0.0, 0.0), corner(k), corner((k + 1) % (2 * points)))
+    mesh.write("star.obj", f"A flat star with {points} points, radii {outer} and {inner} m, in the plane y = 0")
+
+
 if __name__ == "__main__":
     stairs()
     stairs_floor()
@@ -162,3 +175,4 @@ if __name__ == "__main__":
     capsule()
     bar()
     dish()
+    star()

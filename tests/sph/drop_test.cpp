@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "sph/surface_tension.h"
-#include "tests/sph/drop_shapes.h"
+#include "tests/sph/test_meshes.h"
+#include "tools/validation/drop_measures.h"
 
 namespace flowskin::sph {
 namespace {
+
+using namespace tools;
 
 TEST(Drop, OscillatesAtRayleighsFrequency) {
   const double viscosity = 5e-4;

@@ -1,19 +1,50 @@
-// Drops, and what their particles tell about their shape.
+// Drops, and what their particles tell about their shape. Used by the validations and by the solver's own tests.
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
-#include "tests/sph/test_meshes.h"
+#include "sph/solver.h"
 
-namespace flowskin::sph {
+namespace flowskin::tools {
+
+using sph::FluidState;
+using sph::Vec3;
+
+/// A closed mesh around the ellipsoid with the semi-axes given (m), centred at 0: `rings` rings of quadrilaterals.
+inline sph::TriangleMesh ellipsoid_mesh(const Vec3& axes, int rings) {
+  sph::TriangleMesh mesh;
+  const int sectors = 2 * rings;
+  const auto add = [&](double polar, double azimuth) {
+    const Vec3 unit(std::sin(polar) * std::cos(azimuth), std::cos(polar), -std::sin(polar) * std::sin(azimuth));
+    mesh.positions.push_back(axes.cwiseProduct(unit));
+  };
+  add(0, 0);
+  for (int i = 1; i < rings; ++i) {
+    for (int j = 0; j < sectors; ++j) add(M_PI * i / rings, 2 * M_PI * j / sectors);
+  }
+  add(M_PI, 0);
+  const int last = static_cast<int>(mesh.positions.size()) - 1;
+  const auto at = [&](int i, int j) { return 1 + (i - 1) * sectors + j % sectors; };
+  for (int j = 0; j < sectors; ++j) {
+    mesh.triangles.push_back({0, at(1, j), at(1, j + 1)});
+    mesh.triangles.push_back({last, at(rings - 1, j + 1), at(rings - 1, j)});
+    for (int i = 1; i + 1 < rings; ++i) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return mesh;
+}
 
 /// A drop of fluid without gravity, with surface tension 1 N/m, density 1000 kg/m^3 and radius 0.1 m.
 struct DropSetup {
   static constexpr double radius = 0.1, tension = 1, density = 1000;
 
-  static SimulationSetup plain(double spacings_per_radius, double viscosity) {
-    SimulationSetup setup;
+  static sph::SimulationSetup plain(double spacings_per_radius, double viscosity) {
+    sph::SimulationSetup setup;
     setup.settings.spacing = radius / spacings_per_radius;
     setup.settings.gravity.setZero();
     setup.settings.viscosity = viscosity;
@@ -23,20 +54,18 @@ struct DropSetup {
     return setup;
   }
   /// An ellipsoid `stretch` times as long along x as a ball of the same volume.
-  static SimulationSetup ellipsoid(double spacings_per_radius, double viscosity, double stretch) {
-    SimulationSetup setup = plain(spacings_per_radius, viscosity);
-    FluidBody body;
-    body.shape = FluidBody::Shape::mesh;
-    body.mesh = sphere({0, 0, 0}, radius, 24);
-    for (Vec3& p : body.mesh.positions)
-      p = p.cwiseProduct(Vec3(stretch, 1 / std::sqrt(stretch), 1 / std::sqrt(stretch)));
+  static sph::SimulationSetup ellipsoid(double spacings_per_radius, double viscosity, double stretch) {
+    sph::SimulationSetup setup = plain(spacings_per_radius, viscosity);
+    sph::FluidBody body;
+    body.shape = sph::FluidBody::Shape::mesh;
+    body.mesh = ellipsoid_mesh(radius * Vec3(stretch, 1 / std::sqrt(stretch), 1 / std::sqrt(stretch)), 24);
     setup.bodies.push_back(body);
     return setup;
   }
   /// A cube of the ball's volume.
-  static SimulationSetup cube(double spacings_per_radius, double viscosity) {
-    SimulationSetup setup = plain(spacings_per_radius, viscosity);
-    FluidBody body;
+  static sph::SimulationSetup cube(double spacings_per_radius, double viscosity) {
+    sph::SimulationSetup setup = plain(spacings_per_radius, viscosity);
+    sph::FluidBody body;
     body.block = {Vec3::Constant(-0.806 * radius), Vec3::Constant(0.806 * radius)};
     setup.bodies.push_back(body);
     return setup;
@@ -124,7 +153,7 @@ inline Oscillation fit_oscillation(const std::vector<double>& times, const std::
 }
 
 /// The oscillation of an ellipsoid's elongation over so many of Rayleigh's periods, the first fifth left out.
-inline Oscillation measure_oscillation(Solver& solver, double frequency, double periods) {
+inline Oscillation measure_oscillation(sph::Solver& solver, double frequency, double periods) {
   std::vector<double> times, values;
   const double period = 2 * M_PI / frequency;
   for (int k = 8; k <= 40 * periods; ++k) {
@@ -136,7 +165,7 @@ inline Oscillation measure_oscillation(Solver& solver, double frequency, double 
 }
 
 /// Mean pressure (Pa) of the particles nearer than half the drop's radius to its centroid.
-inline double core_pressure(const Solver& solver) {
+inline double core_pressure(const sph::Solver& solver) {
   const FluidState state = solver.state();
   const Vec3 c = centroid(state);
   double sum = 0;
@@ -150,4 +179,4 @@ inline double core_pressure(const Solver& solver) {
   return sum / count;
 }
 
-}  // namespace flowskin::sph
+}  // namespace flowskin::tools
