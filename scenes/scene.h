@@ -33,6 +33,16 @@ struct BoundarySpec {
   std::array<double, 3> color{0.55, 0.53, 0.50};  ///< Linear reflectance, 0 to 1.
 };
 
+struct EmitterSpec {
+  sph::Emitter emitter;  ///< With its mesh already read and placed.
+  MeshPlacement mesh;    ///< shape mesh only
+};
+
+struct SinkSpec {
+  sph::Sink sink;      ///< With its mesh already read and placed.
+  MeshPlacement mesh;  ///< shape mesh only
+};
+
 /// Prescribed motion of the particles, by name, with the numbers it needs (docs/scenes.md gives the formulas).
 struct MotionSpec {
   std::string type = "rotation";
@@ -130,7 +140,8 @@ struct Scene {
   ParticlesSpec particles;
   sph::SolverSettings solver;
   std::vector<BodySpec> bodies;
-  std::vector<sph::Emitter> emitters;
+  std::vector<EmitterSpec> emitters;
+  std::vector<SinkSpec> sinks;
   std::vector<BoundarySpec> boundaries;
   TrackingSpec tracking;
   TextureSpec texture;

@@ -114,9 +114,23 @@ void check_solver(const Scene& scene, Checker& checker) {
   checker.require(solver.speed_of_sound == 0 || solver.speed_of_sound > solver.max_speed, "simulation.speed_of_sound",
                   "must be larger than simulation.max_speed (ten times as large keeps the density within 1 %)");
   for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
-    const sph::Emitter& emitter = scene.emitters[i];
+    const sph::Emitter& emitter = scene.emitters[i].emitter;
     checker.require(!emitter.direction.isZero(0), "emitters", i, "direction", "is zero; expected a direction");
     checker.require(emitter.start < emitter.stop, "emitters", i, "stop", "must be later than start");
+    checker.require(
+        emitter.shape != sph::Emitter::Shape::rectangle || emitter.up.isZero(0) ||
+            emitter.up.cross(emitter.direction).norm() > 1e-6 * emitter.up.norm() * emitter.direction.norm(),
+        "emitters", i, "up", "is along direction; expected a direction across it");
+  }
+  for (std::size_t i = 0; i < scene.sinks.size(); ++i) {
+    const sph::Sink& sink = scene.sinks[i].sink;
+    checker.require(sink.start < sink.stop, "sinks", i, "stop", "must be later than start");
+    checker.require(sink.shape != sph::Sink::Shape::box || is_ordered(sink.box), "sinks", i, "min",
+                    "must be smaller than max along every axis");
+  }
+  for (std::size_t i = 0; i < scene.boundaries.size(); ++i) {
+    checker.require(scene.boundaries[i].boundary.adhesion == 0 || solver.surface_tension > 0, "boundaries", i,
+                    "adhesion", "is a share of fluid.surface_tension, which is 0; give that too");
   }
 }
 
@@ -194,6 +208,16 @@ void load_files(Scene& scene, const JsonNode& root, Problems& problems) {
     BodySpec& body = scene.bodies[i];
     if (body.body.shape != sph::FluidBody::Shape::mesh) continue;
     load_mesh(scene, body.mesh, "bodies", i, body.body.mesh, checker);
+  }
+  for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
+    EmitterSpec& emitter = scene.emitters[i];
+    if (emitter.emitter.shape != sph::Emitter::Shape::mesh) continue;
+    load_mesh(scene, emitter.mesh, "emitters", i, emitter.emitter.mesh, checker);
+  }
+  for (std::size_t i = 0; i < scene.sinks.size(); ++i) {
+    SinkSpec& sink = scene.sinks[i];
+    if (sink.sink.shape != sph::Sink::Shape::mesh) continue;
+    load_mesh(scene, sink.mesh, "sinks", i, sink.sink.mesh, checker);
   }
   for (std::size_t i = 0; i < scene.boundaries.size(); ++i) {
     BoundarySpec& boundary = scene.boundaries[i];

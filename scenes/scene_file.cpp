@@ -24,6 +24,8 @@ std::string read_text(const std::filesystem::path& file) {
 /// File names absolute, so that the written scene means the same wherever it stands.
 void make_names_absolute(Scene& scene) {
   for (BodySpec& body : scene.bodies) body.mesh.file = absolute_name(scene.directory, body.mesh.file);
+  for (EmitterSpec& emitter : scene.emitters) emitter.mesh.file = absolute_name(scene.directory, emitter.mesh.file);
+  for (SinkSpec& sink : scene.sinks) sink.mesh.file = absolute_name(scene.directory, sink.mesh.file);
   for (BoundarySpec& boundary : scene.boundaries) {
     boundary.mesh.file = absolute_name(scene.directory, boundary.mesh.file);
   }

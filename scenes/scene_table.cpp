@@ -188,6 +188,8 @@ Table<Scene> solver_keys() {
       key<S>("fluid.density", at(solver, &Settings::rest_density), number(above(0, 1e5)), "kg/m^3", "Density at rest."),
       key<S>("fluid.viscosity", at(solver, &Settings::viscosity), number(at_least(0, 1e4)), "m^2/s",
              "Kinematic viscosity: water 1e-6, honey 5e-3."),
+      key<S>("fluid.surface_tension", at(solver, &Settings::surface_tension), number(at_least(0, 1e4)), "N/m",
+             "Surface tension: water 0.072, honey 0.06; 0: none."),
       key<S>("simulation.gravity", at(solver, &Settings::gravity), vector(1e4), "m/s^2", "Acceleration of gravity."),
       key<S>("simulation.kernel", at(solver, &Settings::kernel), kernel, "", "Smoothing kernel."),
       key<S>("simulation.support_radius", at(solver, &Settings::support_radius), number(at_least(1.2, 4)), "spacings",
@@ -223,6 +225,9 @@ Table<Scene> solver_keys() {
              "Time step at most this times h^2 / viscosity."),
       key<S>("simulation.force_cfl", at(solver, &Settings::force_cfl), number(above(0, 2)), "",
              "Time step at most this times sqrt(h / a), a the largest acceleration."),
+      key<S>("simulation.capillary_cfl", at(solver, &Settings::capillary_cfl), number(above(0, 2)), "",
+             "Time step at most this times sqrt(density h^3 / (2 pi surface tension)).")
+          .only_for("fluid.surface_tension > 0", [](const S& s) { return s.solver.surface_tension > 0; }),
       key<S>("simulation.max_time_step", at(solver, &Settings::max_time_step), number(above(0, 1e9)), "s",
              "Largest time step."),
       key<S>("simulation.skin", at(solver, &Settings::skin), number(at_least(0, 2)), "spacings",
@@ -248,13 +253,15 @@ Table<Scene> solver_keys() {
 Table<Scene> object_keys() {
   using S = Scene;
   using Source = ParticlesSpec::Source;
+  const auto simulated = [](const S& s) { return s.particles.source == Source::simulation; };
   return {
       list<S>("bodies", at(&S::bodies), body_table(), "Shapes filled with particles at the start.")
           .only_for("particles.source \"simulation\" or \"prescribed\"",
                     [](const S& s) { return s.particles.source != Source::recorded; }),
-      list<S>("emitters", at(&S::emitters), emitter_table(), "Discs that pour fluid.")
-          .only_for("particles.source \"simulation\"",
-                    [](const S& s) { return s.particles.source == Source::simulation; }),
+      list<S>("emitters", at(&S::emitters), emitter_table(), "Outlets that pour fluid.")
+          .only_for("particles.source \"simulation\"", simulated),
+      list<S>("sinks", at(&S::sinks), sink_table(), "Regions that remove the fluid which comes into them.")
+          .only_for("particles.source \"simulation\"", simulated),
       list<S>("boundaries", at(&S::boundaries), boundary_table(), "Walls: open or closed surfaces."),
   };
 }
@@ -416,16 +423,80 @@ Table<BodySpec> body_table() {
   return table;
 }
 
-Table<sph::Emitter> emitter_table() {
-  using E = sph::Emitter;
-  return {
-      key<E>("center", at(&E::center), vector(), "m", "Centre of the disc.").is_required(),
-      key<E>("direction", at(&E::direction), vector(), "", "Direction of the jet; its length does not matter."),
-      key<E>("radius", at(&E::radius), number(above(0, 1e5)), "m", "Radius of the disc.").is_required(),
-      key<E>("speed", at(&E::speed), number(above(0, 1e4)), "m/s", "Speed of the jet.").is_required(),
-      key<E>("start", at(&E::start), number(at_least(0, 1e30)), "s", "Time at which it begins to pour."),
-      key<E>("stop", at(&E::stop), number(at_least(0, 1e30)), "s", "Time at which it stops."),
+Table<EmitterSpec> emitter_table() {
+  using E = EmitterSpec;
+  using J = sph::Emitter;
+  using Shape = J::Shape;
+  const auto emitter = &E::emitter;
+  const auto shape = choice_of<Shape>({{"disc", Shape::disc}, {"rectangle", Shape::rectangle}, {"mesh", Shape::mesh}});
+  const auto is = [](Shape wanted) { return [wanted](const E& e) { return e.emitter.shape == wanted; }; };
+  const auto plain = [](const E& e) { return e.emitter.shape != Shape::mesh; };
+  const auto rectangle = is(Shape::rectangle);
+  Table<E> table = {
+      key<E>("shape", at(emitter, &J::shape), shape, "", "Shape of the outlet.").selecting(),
+      key<E>("center", at(emitter, &J::center), vector(), "m", "Centre of the outlet.")
+          .is_required()
+          .only_for("shape \"disc\" or \"rectangle\"", plain),
+      key<E>("direction", at(emitter, &J::direction), vector(), "",
+             "Direction of the jet; its length does not matter."),
+      key<E>("radius", at(emitter, &J::radius), number(above(0, 1e5)), "m", "Radius of the disc.")
+          .is_required()
+          .only_for("shape \"disc\"", is(Shape::disc)),
+      key<E>("width", at(emitter, &J::width), number(above(0, 1e5)), "m", "Edge across up.")
+          .is_required()
+          .only_for("shape \"rectangle\"", rectangle),
+      key<E>("height", at(emitter, &J::height), number(above(0, 1e5)), "m", "Edge along up.")
+          .is_required()
+          .only_for("shape \"rectangle\"", rectangle),
+      key<E>("up", at(emitter, &J::up), vector(), "",
+             "Direction of the edge height, made perpendicular to the jet; zero: z for jets along y, else y.")
+          .only_for("shape \"rectangle\"", rectangle),
   };
+  for (Key<E>& key : placement_keys(&E::mesh)) {
+    table.push_back(std::move(key).only_for("shape \"mesh\"", is(Shape::mesh)));
+  }
+  append<E>(
+      table,
+      {
+          key<E>("speed", at(emitter, &J::speed), number(above(0, 1e4)), "m/s", "Speed of the jet.").is_required(),
+          key<E>("start", at(emitter, &J::start), number(at_least(0, 1e30)), "s", "Time at which it begins to pour."),
+          key<E>("stop", at(emitter, &J::stop), number(at_least(0, 1e30)), "s", "Time at which it stops."),
+          key<E>("max_particles", at(emitter, &J::max_particles), natural(), "",
+                 "Most particles that it pours, in whole layers; 0: any number."),
+      });
+  return table;
+}
+
+Table<SinkSpec> sink_table() {
+  using K = SinkSpec;
+  using S = sph::Sink;
+  using Shape = S::Shape;
+  const auto sink = &K::sink;
+  const auto shape = choice_of<Shape>({{"box", Shape::box}, {"ball", Shape::ball}, {"mesh", Shape::mesh}});
+  const auto is = [](Shape wanted) { return [wanted](const K& k) { return k.sink.shape == wanted; }; };
+  Table<K> table = {
+      key<K>("shape", at(sink, &S::shape), shape, "", "Shape of the region.").is_required().selecting(),
+      key<K>("min", at(sink, &S::box, &sph::Box::min), vector(), "m", "Lower corner.")
+          .is_required()
+          .only_for("shape \"box\"", is(Shape::box)),
+      key<K>("max", at(sink, &S::box, &sph::Box::max), vector(), "m", "Upper corner.")
+          .is_required()
+          .only_for("shape \"box\"", is(Shape::box)),
+      key<K>("center", at(sink, &S::center), vector(), "m", "Centre.")
+          .is_required()
+          .only_for("shape \"ball\"", is(Shape::ball)),
+      key<K>("radius", at(sink, &S::radius), number(above(0, 1e5)), "m", "Radius.")
+          .is_required()
+          .only_for("shape \"ball\"", is(Shape::ball)),
+  };
+  for (Key<K>& key : placement_keys(&K::mesh)) {
+    table.push_back(std::move(key).only_for("shape \"mesh\"", is(Shape::mesh)));
+  }
+  append<K>(table, {
+                       key<K>("start", at(sink, &S::start), number(at_least(0, 1e30)), "s", "Time at which it opens."),
+                       key<K>("stop", at(sink, &S::stop), number(at_least(0, 1e30)), "s", "Time at which it closes."),
+                   });
+  return table;
 }
 
 namespace {
@@ -449,21 +520,24 @@ Table<BoundarySpec> boundary_table() {
   const auto interpolation = choice_of<WallMotion::Interpolation>(
       {{"linear", WallMotion::Interpolation::linear}, {"smooth", WallMotion::Interpolation::smooth}});
   Table<B> table = placement_keys(&B::mesh);
-  append<B>(table, {
-                       key<B>("slip", at(&B::boundary, &sph::Boundary::slip), number(at_least(0, 1)), "",
-                              "0: no slip, 1: free slip; between: the share of wall friction taken away."),
-                       key<B>("surface_velocity", at(&B::boundary, &sph::Boundary::surface_velocity), vector(1e4),
-                              "m/s", "Velocity of the surface along the wall, as of a conveyor belt."),
-                       list<B>("keyframes", at(&B::boundary, &sph::Boundary::motion, &WallMotion::keyframes),
-                               keyframe_table(), "Motion of the wall; empty: it rests."),
-                       key<B>("interpolation", at(&B::boundary, &sph::Boundary::motion, &WallMotion::interpolation),
-                              interpolation, "",
-                              "Between keyframes: linear, at constant speed, or smooth, from rest to rest."),
-                       key<B>("pivot", at(&B::boundary, &sph::Boundary::motion, &WallMotion::pivot), vector(), "m",
-                              "Point that the keyframes rotate about, in the place of the mesh without them."),
-                       key<B>("visible", at(&B::visible), boolean(), "", "Whether it is drawn in the pictures."),
-                       key<B>("color", at(&B::color), color(), "", "Reflectance in the pictures."),
-                   });
+  append<B>(
+      table,
+      {
+          key<B>("slip", at(&B::boundary, &sph::Boundary::slip), number(at_least(0, 1)), "",
+                 "0: no slip, 1: free slip; between: the share of wall friction taken away."),
+          key<B>("adhesion", at(&B::boundary, &sph::Boundary::adhesion), number(at_least(0, 2)), "",
+                 "Attraction of the fluid, with surface tension: contact angle 180 degrees at 0, 90 at 0.5, 0 at 1."),
+          key<B>("surface_velocity", at(&B::boundary, &sph::Boundary::surface_velocity), vector(1e4), "m/s",
+                 "Velocity of the surface along the wall, as of a conveyor belt."),
+          list<B>("keyframes", at(&B::boundary, &sph::Boundary::motion, &WallMotion::keyframes), keyframe_table(),
+                  "Motion of the wall; empty: it rests."),
+          key<B>("interpolation", at(&B::boundary, &sph::Boundary::motion, &WallMotion::interpolation), interpolation,
+                 "", "Between keyframes: linear, at constant speed, or smooth, from rest to rest."),
+          key<B>("pivot", at(&B::boundary, &sph::Boundary::motion, &WallMotion::pivot), vector(), "m",
+                 "Point that the keyframes rotate about, in the place of the mesh without them."),
+          key<B>("visible", at(&B::visible), boolean(), "", "Whether it is drawn in the pictures."),
+          key<B>("color", at(&B::color), color(), "", "Reflectance in the pictures."),
+      });
   return table;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace flowskin::sph {
 
@@ -22,7 +23,28 @@ bool left_of(const Vec3& a, const Vec3& b, double y, double z) {
   return left != swap;
 }
 
+// Where the line along x through (y, z) crosses a triangle.
+std::optional<Crossing> cross_row(const Vec3& a, const Vec3& b, const Vec3& c, double y, double z) {
+  const bool ab = left_of(a, b, y, z), bc = left_of(b, c, y, z), ca = left_of(c, a, y, z);
+  if (ab != bc || bc != ca) return std::nullopt;
+  // Plane of the triangle solved for x.
+  const double ny = (b.z() - a.z()) * (c.x() - a.x()) - (b.x() - a.x()) * (c.z() - a.z());
+  const double nz = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+  const double nx = (b.y() - a.y()) * (c.z() - a.z()) - (b.z() - a.z()) * (c.y() - a.y());
+  if (nx == 0) return std::nullopt;
+  return Crossing{a.x() - (ny * (y - a.y()) + nz * (z - a.z())) / nx, ab ? 1 : -1};
+}
+
 }  // namespace
+
+bool is_inside(const TriangleMesh& mesh, const Vec3& p) {
+  int winding = 0;
+  for (const auto& t : mesh.triangles) {
+    const auto crossing = cross_row(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], p.y(), p.z());
+    if (crossing && crossing->x <= p.x()) winding += crossing->sign;
+  }
+  return winding != 0;
+}
 
 bool is_closed(const TriangleMesh& mesh) {
   using Key = std::array<double, 6>;
@@ -61,15 +83,9 @@ std::vector<Vec3> lattice_points_inside(const TriangleMesh& mesh, double spacing
     for (int j = std::max(0, static_cast<int>(t_low.y()) - 1); j <= j_end; ++j) {
       for (int k = std::max(0, static_cast<int>(t_low.z()) - 1); k <= k_end; ++k) {
         const double y = row_y(j), z = row_z(k);
-        const bool ab = left_of(a, b, y, z), bc = left_of(b, c, y, z), ca = left_of(c, a, y, z);
-        if (ab != bc || bc != ca) continue;
-        // Plane of the triangle solved for x.
-        const double ny = (b.z() - a.z()) * (c.x() - a.x()) - (b.x() - a.x()) * (c.z() - a.z());
-        const double nz = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-        const double nx = (b.y() - a.y()) * (c.z() - a.z()) - (b.z() - a.z()) * (c.y() - a.y());
-        if (nx == 0) continue;
-        rows[static_cast<std::size_t>(j) * count.z() + k].push_back(
-            {a.x() - (ny * (y - a.y()) + nz * (z - a.z())) / nx, ab ? 1 : -1});
+        if (const auto crossing = cross_row(a, b, c, y, z)) {
+          rows[static_cast<std::size_t>(j) * count.z() + k].push_back(*crossing);
+        }
       }
     }
   }

@@ -16,4 +16,7 @@ bool is_closed(const TriangleMesh& mesh);
 /// sign (winding number), so hollows stay empty and overlapping shells are filled once.
 std::vector<Vec3> lattice_points_inside(const TriangleMesh& mesh, double spacing);
 
+/// Whether a point lies inside a closed mesh, by the same rule.
+bool is_inside(const TriangleMesh& mesh, const Vec3& p);
+
 }  // namespace flowskin::sph

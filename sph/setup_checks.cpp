@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "sph/emitter_outlet.h"
+#include "sph/fluid_sinks.h"
 #include "sph/surface_tension.h"
 
 namespace flowskin::sph {
@@ -52,9 +54,6 @@ void check_settings(const SolverSettings& s) {
 }
 
 void check_domain(const SolverSettings& s) {
-  if (s.surface_tension > 0 && std::any_of(s.periodic.begin(), s.periodic.end(), [](bool p) { return p; })) {
-    throw SettingsError("surface_tension is not supported in a periodic domain: set it to 0 or make no axis periodic");
-  }
   for (int a = 0; a < 3; ++a) {
     const std::string axis(1, static_cast<char>('x' + a));
     const double length = s.domain.max[a] - s.domain.min[a];
@@ -62,11 +61,12 @@ void check_domain(const SolverSettings& s) {
       throw SettingsError("the domain's min corner must not be greater than its max corner along " + axis);
     }
     // From here on no particle meets two images of another one.
-    const double shortest = 2 * s.support_radius * s.spacing;
+    const double reach = std::max(s.support_radius * s.spacing, SurfaceTension(s).reach);
+    const double shortest = 2 * reach;
     if (s.periodic[a] && length < shortest * (1 - 1e-9)) {
       throw SettingsError("the domain is periodic along " + axis + ", but only " + number(length) +
-                          " m long; expected at least twice the support radius, " + number(shortest) +
-                          " m: a longer domain or a smaller spacing");
+                          " m long; expected at least twice the support radius (with surface tension: six spacings), " +
+                          number(shortest) + " m: a longer domain or a smaller spacing");
     }
   }
 }
@@ -109,6 +109,13 @@ void check_setup(const SimulationSetup& setup) {
   }
   for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
     check_mesh(setup.bodies[b].mesh, "fluid body " + std::to_string(b + 1));
+  }
+  for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
+    check_mesh(setup.emitters[e].mesh, "emitter " + std::to_string(e + 1));
+  }
+  for (std::size_t k = 0; k < setup.sinks.size(); ++k) {
+    check_mesh(setup.sinks[k].mesh, "sink " + std::to_string(k + 1));
+    check_sink(setup.sinks[k], "sink " + std::to_string(k + 1));
   }
   for (std::size_t b = 0; b < setup.boundaries.size(); ++b) {
     const std::string name = "boundary " + std::to_string(b + 1);
@@ -159,9 +166,7 @@ SolverSettings with_automatic_values(const SimulationSetup& setup, const Box& fl
     // Fluid at rest without gravity: any speed of sound will do.
     if (s.max_speed == 0) s.max_speed = 50 * s.spacing;
   }
-  if (s.speed_of_sound == 0) {
-    s.speed_of_sound = std::max(10 * s.max_speed, capillary_speed_of_sound(s));
-  }
+  if (s.speed_of_sound == 0) s.speed_of_sound = std::max(10 * s.max_speed, capillary_speed_of_sound(s));
   if (s.viscosity_solver == ViscositySolver::automatic) {
     const double h = s.support_radius * s.spacing / 2;
     const double longest = std::min(s.acoustic_cfl * h / s.speed_of_sound, s.max_time_step);

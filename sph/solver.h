@@ -96,13 +96,30 @@ struct FluidBody {
   Vec3 angular_velocity = Vec3::Zero();  ///< Initial spin about the body's centroid (rad/s).
 };
 
-/// A disc that pours fluid along its axis.
+/// An outlet that pours fluid along its axis.
 struct Emitter {
-  Vec3 center = Vec3::Zero();     ///< m
+  Vec3 center = Vec3::Zero();     ///< Disc, rectangle: middle of the outlet (m).
   Vec3 direction{0, -1, 0};       ///< Axis; normalised by the solver.
-  double radius = 0;              ///< m
+  double radius = 0;              ///< Disc (m).
   double speed = 0;               ///< m/s along the axis
   double start = 0, stop = 1e30;  ///< Pours while start <= t < stop (s).
+  enum class Shape { disc, rectangle, mesh };
+  Shape shape = Shape::disc;
+  double width = 0, height = 0;     ///< Rectangle: edges across and along `up` (m).
+  Vec3 up = Vec3::Zero();           ///< Rectangle: direction of the edge `height`; zero: z for jets along y, else y.
+  TriangleMesh mesh{};              ///< Mesh: its shadow along the direction pours, from its foremost point on (m).
+  std::uint64_t max_particles = 0;  ///< Pours whole layers up to so many particles; 0: any number.
+};
+
+/// A region that removes the fluid which comes into it: at the latest when it is half a skin inside.
+struct Sink {
+  enum class Shape { box, ball, mesh };
+  Shape shape = Shape::box;
+  Box box;                        ///< shape box (m)
+  Vec3 center = Vec3::Zero();     ///< shape ball (m)
+  double radius = 0;              ///< shape ball (m)
+  TriangleMesh mesh;              ///< shape mesh: a closed surface (m)
+  double start = 0, stop = 1e30;  ///< Open while start <= t < stop (s).
 };
 
 /// A wall: any open or closed triangle surface.
@@ -120,6 +137,7 @@ struct SimulationSetup {
   std::vector<FluidBody> bodies;
   std::vector<Emitter> emitters;
   std::vector<Boundary> boundaries;
+  std::vector<Sink> sinks;
 };
 
 /// The fluid particles at one time, in order of ascending id. All arrays have one entry a particle.
@@ -152,6 +170,8 @@ struct SolverStatistics {
   std::uint64_t wall_crossings = 0;    ///< Particle paths that would have passed a wall and were put back.
   std::uint64_t squeezed_through = 0;  ///< Particles that moving walls left no room: they passed one.
   std::uint64_t emitted = 0;
+  std::uint64_t not_emitted = 0;  ///< Particles that emitters left out because their places were taken.
+  std::uint64_t drained = 0;      ///< Particles removed by sinks.
   std::uint64_t steps_limited_by_acoustic = 0, steps_limited_by_viscous = 0, steps_limited_by_force = 0;
   std::uint64_t viscosity_iterations = 0;  ///< Of the implicit viscosity, in all steps.
   double viscosity_tolerance = 0;          ///< Residual that the last implicit step asked for (m/s, root mean square).
@@ -161,7 +181,7 @@ struct SolverStatistics {
 
   template <class Archive>
   void visit(Archive& archive) {
-    archive(steps, list_rebuilds, left_domain, wall_crossings, squeezed_through, emitted);
+    archive(steps, list_rebuilds, left_domain, wall_crossings, squeezed_through, emitted, not_emitted, drained);
     archive(steps_limited_by_acoustic, steps_limited_by_viscous, steps_limited_by_force, steps_limited_by_capillary);
     archive(last_step, viscosity_iterations, viscosity_tolerance);
     archive(seconds_neighbors, seconds_forces, seconds_viscosity, seconds_integration);

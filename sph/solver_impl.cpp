@@ -9,6 +9,7 @@
 
 #include "sph/boundary_sampling.h"
 #include "sph/fluid_bodies.h"
+#include "sph/fluid_sinks.h"
 #include "sph/parallel.h"
 #include "sph/setup_checks.h"
 
@@ -28,6 +29,12 @@ Box bounding_box(const std::vector<FluidPoint>& points) {
     box.min = box.min.cwiseMin(p.position);
     box.max = box.max.cwiseMax(p.position);
   }
+  return box;
+}
+
+Box bounding_box(const TriangleMesh& mesh) {
+  Box box = {mesh.positions.front(), mesh.positions.front()};
+  for (const Vec3& p : mesh.positions) box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
   return box;
 }
 
@@ -77,6 +84,12 @@ SolverImpl::SolverImpl(SimulationSetup setup)
   wall_kernel_ = make_wall_kernel(settings_);
   boundary_ = BoundaryParticles(setup.boundaries, settings_, wall_kernel_, periodic_);
   const std::vector<FluidPoint> points = fill_bodies(setup.bodies, settings_.spacing, boundary_.positions(), periodic_);
+  for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
+    emitters_.emplace_back(setup.emitters[e], settings_.spacing, "emitter " + std::to_string(e + 1));
+    setup.emitters[e].center = emitters_.back().outlet().center();
+  }
+  sinks_ = std::move(setup.sinks);
+  for (Sink& sink : sinks_) sink.box = sink.shape == Sink::Shape::mesh ? bounding_box(sink.mesh) : sink.box;
   settings_ = complete_settings(setup, points, boundary_.greatest_speed());
   coefficients_ = PairCoefficients(settings_, wall_kernel_);
   surface_tension_ = SurfaceTension(settings_);
@@ -87,9 +100,6 @@ SolverImpl::SolverImpl(SimulationSetup setup)
     if (periodic_.along(a)) origin_[a] = 0.5 * (settings_.domain.min[a] + settings_.domain.max[a]);
   }
   boundary_.place_at_origin(origin_);
-  for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
-    emitters_.emplace_back(setup.emitters[e], settings_.spacing, "emitter " + std::to_string(e + 1));
-  }
 
   particles_.reserve(points.size(), settings_.xsph > 0);
   for (const FluidPoint& p : points) {
@@ -115,7 +125,7 @@ bool SolverImpl::advance_towards(double time, const std::function<bool()>& stop)
       step(longest >= 0.5 * left ? 0.5 * left : left);
     }
   }
-  if (some_outside_) {
+  if (some_outside_ || some_to_drain()) {
     rebuild_lists();
     evaluate_forces();
   }
@@ -247,14 +257,23 @@ void SolverImpl::pour_emitters() {
   for (JetEmitter& emitter : emitters_) {
     if (emitter.next_time() > time_) continue;
     poured.clear();
-    emitter.pour(time_, poured);
+    JetEmitter::Surroundings surroundings;
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      emitter.collect(particles_.positions[i], static_cast<double>(particles_.compressions[i]), surroundings);
+    }
+    statistics_.not_emitted += emitter.pour(time_, surroundings, poured);
     for (const JetEmitter::Particle& p : poured) {
       particles_.append(next_id_++, p.position, emitter.velocity(), p.rest_position, settings_.xsph > 0);
       fill_pack(particles_.size() - 1, 0);
     }
     statistics_.emitted += poured.size();
-    particles_changed_ = true;
+    particles_changed_ = particles_changed_ || !poured.empty();
   }
+}
+
+bool SolverImpl::some_to_drain() const {
+  return !sinks_.empty() && std::any_of(particles_.positions.begin(), particles_.positions.end(),
+                                        [&](const Vec3& p) { return in_open_sink(sinks_, p, time_); });
 }
 
 bool SolverImpl::outside_domain(const Vec3& p) const {
@@ -278,12 +297,17 @@ void SolverImpl::wrap_particles() {
   }
 }
 
-void SolverImpl::remove_outside() {
+void SolverImpl::remove_lost() {
   std::vector<std::uint32_t> kept;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (!outside_domain(particles_.positions[i])) kept.push_back(static_cast<std::uint32_t>(i));
+    if (outside_domain(particles_.positions[i])) {
+      ++statistics_.left_domain;
+    } else if (in_open_sink(sinks_, particles_.positions[i], time_)) {
+      ++statistics_.drained;
+    } else {
+      kept.push_back(static_cast<std::uint32_t>(i));
+    }
   }
-  statistics_.left_domain += particles_.size() - kept.size();
   if (kept.size() < particles_.size()) particles_.rearrange(kept);
   some_outside_ = false;
 }
@@ -343,7 +367,7 @@ bool SolverImpl::lists_outdated() const {
 
 void SolverImpl::rebuild_lists() {
   const Stopwatch watch(statistics_.seconds_neighbors);
-  if (some_outside_) remove_outside();
+  if (some_outside_ || some_to_drain()) remove_lost();
   if (periodic_.any()) wrap_particles();
   const std::span<const FluidPack> packs = particles_.packs;
   if (particles_changed_ || ++builds_since_sort_ >= builds_per_sort) {
@@ -367,7 +391,7 @@ void SolverImpl::build_lists(const PointView& places) {
   if (surface_tension_.active()) {
     const auto reach = static_cast<float>(surface_tension_.reach + settings_.skin * settings_.spacing);
     tension_lists_.build(clusters_, clusters_, reach, period);
-    if (!boundary_.adhesions().empty()) adhesion_lists_.build(clusters_, boundary_.clusters(), reach);
+    if (!boundary_.adhesions().empty()) adhesion_lists_.build(clusters_, boundary_.clusters(), reach, period);
   }
   collect_wall_triangles();
 }

@@ -63,7 +63,9 @@ class SolverImpl {
   void fill_pack(std::size_t i, double dt);
   void pour_emitters();
   bool outside_domain(const Vec3& p) const;
-  void remove_outside();
+  bool some_to_drain() const;
+  /// Takes out what has left the domain or is in a sink.
+  void remove_lost();
   void wrap_particles();
   /// Whether some pair may have come into reach that is not in the lists.
   bool lists_outdated() const;
@@ -87,6 +89,7 @@ class SolverImpl {
   SurfaceTension surface_tension_;
   std::vector<SurfaceStress> surface_stresses_;  // empty without surface tension
   std::vector<JetEmitter> emitters_;
+  std::vector<Sink> sinks_;
   BoundaryParticles boundary_;
   ParticleArrays particles_;
   std::uint64_t next_id_ = 0;

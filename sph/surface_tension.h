@@ -23,12 +23,14 @@ struct SurfaceTension {
   /// |grad c| of a particle times what counts of it: the disorder inside the fluid has none.
   float counted_gradient(float gradient) const;
 
-  double reach = 0;           ///< Support radius D of the kernel, and of the attraction of walls (m).
-  float inverse_reach = 0;    ///< 1 / D (1/m)
-  float gradient_scale = 0;   ///< V G, G the kernel's gradient scale (kernels.h)
-  float least_gradient = 0;   ///< |grad c| up to which nothing counts (1/m) ...
-  float inverse_ramp = 0;     ///< ... and the inverse of the width over which it comes to count.
-  float stress_scale = 0;     ///< K gamma V^2 G / m
+  double reach = 0;          ///< Support radius D of the kernel, and of the attraction of walls (m).
+  float inverse_reach = 0;   ///< 1 / D (1/m)
+  float gradient_scale = 0;  ///< V G, G the kernel's gradient scale (kernels.h)
+  float least_gradient = 0;  ///< |grad c| up to which nothing counts (1/m) ...
+  float inverse_ramp = 0;    ///< ... and the inverse of the width over which it comes to count.
+  float stress_scale = 0;    ///< K gamma V^2 G / m
+  float period[3] = {}, inverse_period[3] = {};  ///< m, 1/m; 0 along axes that are not periodic
+  bool periodic = false;
   float wall_attraction = 0;  ///< Acceleration over distance, per adhesion and area (1/(m^2 s^2)).
 };
 

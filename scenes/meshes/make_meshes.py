@@ -184,6 +184,19 @@ def paddle(width=0.5, height=0.16, shaft=0.06, top=0.6, thick=0.05):
     mesh.write("paddle.obj", f"A paddle {width} m wide and {thick} m thick on a shaft along the y axis")
 
 
+def star(outer=0.06, inner=0.03, points=5):
+    """A flat star about the y axis, facing up: the outline of an outlet."""
+    mesh = Mesh()
+
+    def corner(k):
+        r, a = (inner if k % 2 else outer), math.pi * k / points
+        return (round(r * math.cos(a), 6), 0.0, round(-r * math.sin(a), 6))
+
+    for k in range(2 * points):
+        mesh.face((0.0, 0.0, 0.0), corner(k), corner((k + 1) % (2 * points)))
+    mesh.write("star.obj", f"A flat star with {points} points, radii {outer} and {inner} m, in the plane y = 0")
+
+
 if __name__ == "__main__":
     stairs()
     stairs_floor()
@@ -196,3 +209,4 @@ if __name__ == "__main__":
     cylinder("cylinder.obj", "A closed cylinder around the y axis, radius 1 m, height 1 m", lid=True)
     cylinder("tub.obj", "A cylinder around the y axis without a lid, radius 1 m, height 1 m", lid=False)
     paddle()
+    star()

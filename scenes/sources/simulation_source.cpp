@@ -16,7 +16,8 @@ sph::SimulationSetup setup_of(const Scene& scene) {
   setup.settings = scene.solver;
   setup.settings.spacing = scene.particles.spacing;
   for (const BodySpec& body : scene.bodies) setup.bodies.push_back(body.body);
-  setup.emitters = scene.emitters;
+  for (const EmitterSpec& emitter : scene.emitters) setup.emitters.push_back(emitter.emitter);
+  for (const SinkSpec& sink : scene.sinks) setup.sinks.push_back(sink.sink);
   for (const BoundarySpec& boundary : scene.boundaries) setup.boundaries.push_back(boundary.boundary);
   return setup;
 }
@@ -66,6 +67,8 @@ SourceStatistics SimulationSource::statistics() const {
   SourceStatistics statistics;
   statistics.steps = solver.steps;
   statistics.left_domain = solver.left_domain;
+  statistics.emitted = solver.emitted;
+  statistics.drained = solver.drained;
   statistics.wall_crossings = solver.wall_crossings;
   statistics.kinetic_energy = energy.kinetic;
   statistics.potential_energy = energy.potential;
@@ -81,13 +84,15 @@ SourceStatistics SimulationSource::statistics() const {
   statistics.summary = fmt::format(
       "simulation: {} fluid and {} wall particles, spacing {:.4g} m, support radius {:.4g} m, speed of sound {:.4g} "
       "m/s "
-      "(fastest flow expected {:.4g} m/s), viscosity {:.4g} m^2/s, {}; steps limited by acoustic/viscous/force: "
-      "{}/{}/{}; "
+      "(fastest flow expected {:.4g} m/s), viscosity {:.4g} m^2/s, {}; steps limited by "
+      "acoustic/viscous/force/capillary: "
+      "{}/{}/{}/{}; "
       "{:.1f} MB",
       solver_.particle_count(), solver_.boundary_particle_count(), settings.spacing,
       settings.support_radius * settings.spacing, settings.speed_of_sound, settings.max_speed, settings.viscosity,
       viscosity_solver(settings, solver), solver.steps_limited_by_acoustic, solver.steps_limited_by_viscous,
-      solver.steps_limited_by_force, static_cast<double>(solver_.memory_bytes()) / 1e6);
+      solver.steps_limited_by_force, solver.steps_limited_by_capillary,
+      static_cast<double>(solver_.memory_bytes()) / 1e6);
   if (solver.squeezed_through > 0) {
     statistics.summary +=
         fmt::format("; {} particles passed moving walls that left them no room", solver.squeezed_through);

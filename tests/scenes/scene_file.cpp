@@ -46,7 +46,7 @@ TEST(SceneFile, CommentsAreAllowed) {
       "// a scene\n{ /* many\n frames */ \"frames\": 7, \"particles\": {\"spacing\": 0.1}, // end\n"
       "\"emitters\": [{\"center\": [1, 2, 3], \"radius\": 1, \"speed\": 2}]}");
   EXPECT_EQ(scene.frames, 7);
-  EXPECT_EQ(scene.emitters.at(0).center, Vec3(1, 2, 3));
+  EXPECT_EQ(scene.emitters.at(0).emitter.center, Vec3(1, 2, 3));
 }
 
 // Every key of a simulated scene, none at its default.

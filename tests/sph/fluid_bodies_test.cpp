@@ -147,9 +147,10 @@ TEST(JetEmitter, FlowRateIsAreaTimesSpeed) {
   const double spacing = 0.025;
   JetEmitter jet(make_emitter(), spacing, "emitter");
   std::vector<JetEmitter::Particle> particles;
-  jet.pour(5, particles);
+  EXPECT_EQ(jet.pour(5, {}, particles), 0U);
   const double volume = static_cast<double>(particles.size()) * std::pow(spacing, 3);
-  EXPECT_NEAR(volume, M_PI * 0.04 * 0.5 * 1.9, 0.03 * volume);
+  // Exact but for the last layer, of about 38.
+  EXPECT_NEAR(volume, M_PI * 0.04 * 0.5 * 1.9, 0.02 * volume);
   EXPECT_EQ(particles.size() % jet.layer_size(), 0U);
 }
 
@@ -157,11 +158,11 @@ TEST(JetEmitter, PlacesDoNotDependOnTheSteps) {
   JetEmitter coarse(make_emitter(), 0.05, "emitter"), fine(make_emitter(), 0.05, "emitter");
   std::vector<JetEmitter::Particle> a, b, poured;
   const double end = 0.97;
-  coarse.pour(end, a);
+  coarse.pour(end, {}, a);
   for (int k = 0; k <= 80; ++k) {
     const double t = end * k / 80;
     poured.clear();
-    fine.pour(t, poured);
+    fine.pour(t, {}, poured);
     for (auto& p : poured) {
       p.position += (end - t) * fine.velocity();  // on their way until the end
       b.push_back(p);

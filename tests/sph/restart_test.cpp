@@ -83,6 +83,29 @@ std::vector<Case> cases() {
          setup.settings.periodic = {true, false, true};
          return setup;
        }},
+      {"SurfaceTensionAndAdhesion",
+       [] {
+         SimulationSetup setup = splash();
+         setup.settings.surface_tension = 5;
+         for (Boundary& wall : setup.boundaries) wall.adhesion = 0.4;
+         return setup;
+       }},
+      {"BlockedMeshEmitterAndSinks",
+       [] {
+         SimulationSetup setup = splash();
+         Emitter emitter;
+         emitter.shape = Emitter::Shape::mesh;
+         emitter.mesh = sphere({0.15, 0.06, 0.1}, 0.05, 8);
+         emitter.speed = 1;
+         setup.emitters.push_back(emitter);
+         Sink sink;
+         sink.shape = Sink::Shape::ball;
+         sink.center = {0.05, 0.02, 0.05};
+         sink.radius = 0.04;
+         sink.start = 0.02;
+         setup.sinks.push_back(sink);
+         return setup;
+       }},
       {"Xsph",
        [] {
          SimulationSetup setup = splash();

@@ -21,6 +21,8 @@ void describe_source(const scenes::ParticleSource& source, FrameRow& row) {
   row.mean_density_error = statistics.mean_density_error;
   row.max_density_error = statistics.max_density_error;
   row.left_domain = statistics.left_domain;
+  row.emitted = statistics.emitted;
+  row.drained = statistics.drained;
   row.wall_crossings = statistics.wall_crossings;
 }
 

@@ -36,7 +36,7 @@ struct FrameRow {
   std::uint64_t steps = 0;                   ///< solver steps since the start
   double time_step = 0;                      ///< s, the last one
   double mean_density_error = 0, max_density_error = 0;
-  std::uint64_t left_domain = 0, wall_crossings = 0;  ///< since the start
+  std::uint64_t left_domain = 0, emitted = 0, drained = 0, wall_crossings = 0;  ///< since the start
   double seconds_source = 0, seconds_tracking = 0, seconds_topology = 0, seconds_writing = 0, seconds_pictures = 0,
          seconds_statistics = 0;
 
@@ -86,6 +86,8 @@ void for_each_frame_column(Row& row, Visit visit) {
   visit("mean_density_error", row.mean_density_error);
   visit("max_density_error", row.max_density_error);
   visit("left_domain", row.left_domain);
+  visit("emitted", row.emitted);
+  visit("drained", row.drained);
   visit("wall_crossings", row.wall_crossings);
   visit("seconds_source", row.seconds_source);
   visit("seconds_tracking", row.seconds_tracking);

@@ -9,10 +9,14 @@ namespace flowskin::tools {
 
 // Each is defined in the file of its name in tools/validation/cases/.
 ValidationCase conservation_case();
+ValidationCase oscillating_drop_case();
+ValidationCase square_drop_case();
 
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases{
       conservation_case(),
+      oscillating_drop_case(),
+      square_drop_case(),
   };
   return cases;
 }
