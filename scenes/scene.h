@@ -128,6 +128,8 @@ struct Scene {
   double frame_rate = 30;  ///< 1/s
   ParticlesSpec particles;
   sph::SolverSettings solver;
+  sph::Rheology rheology;          ///< Of the one fluid where there are no fluids.
+  std::vector<sph::Fluid> fluids;  ///< Several fluids, instead of solver.viscosity and rheology.
   std::vector<BodySpec> bodies;
   std::vector<sph::Emitter> emitters;
   std::vector<BoundarySpec> boundaries;

@@ -24,6 +24,7 @@ class JetEmitter {
   /// birth time.
   void pour(double time, std::vector<Particle>& particles);
 
+  const std::string& fluid() const { return emitter_.fluid; }
   const Vec3& velocity() const { return velocity_; }
   std::size_t layer_size() const { return offsets_.size(); }
   /// Whether a point lies in the nozzle, where fluid keeps the jet's velocity.
