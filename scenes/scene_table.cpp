@@ -213,7 +213,7 @@ Table<Scene> solver_keys() {
       key<S>("fluid.density", at(solver, &Settings::rest_density), number(above(0, 1e5)), "kg/m^3", "Density at rest."),
       key<S>("fluid.viscosity", at(solver, &Settings::viscosity), number(at_least(0, 1e4)), "m^2/s",
              "Kinematic viscosity: water 1e-6, honey 5e-3.")
-          .only_for("fluids empty", one_fluid),
+          .only_for("scenes without fluids", one_fluid),
       key<S>("simulation.gravity", at(solver, &Settings::gravity), vector(1e4), "m/s^2", "Acceleration of gravity."),
       key<S>("simulation.kernel", at(solver, &Settings::kernel), kernel, "", "Smoothing kernel."),
       key<S>("simulation.support_radius", at(solver, &Settings::support_radius), number(at_least(1.2, 4)), "spacings",
@@ -265,7 +265,7 @@ Table<Scene> solver_keys() {
   Table<S> rheology = rheology_keys<S>("fluid.rheology.", at(&S::rheology));
   for (std::size_t k = 0; k < rheology.size(); ++k) {
     table.insert(table.begin() + 3 + static_cast<std::ptrdiff_t>(k),
-                 std::move(rheology[k]).only_for("fluids empty", one_fluid));
+                 std::move(rheology[k]).only_for("scenes without fluids", one_fluid));
   }
   for (Key<S>& key : table) {
     if (key.condition.empty()) key.condition = "particles.source \"simulation\"";

@@ -9,10 +9,14 @@ namespace flowskin::tools {
 
 // Each is defined in the file of its name in tools/validation/cases/.
 ValidationCase conservation_case();
+ValidationCase rheology_case();
+ValidationCase bingham_slump_case();
 
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases{
       conservation_case(),
+      rheology_case(),
+      bingham_slump_case(),
   };
   return cases;
 }
