@@ -139,6 +139,8 @@ struct Scene {
   double frame_rate = 30;  ///< 1/s
   ParticlesSpec particles;
   sph::SolverSettings solver;
+  sph::Rheology rheology;          ///< Of the one fluid where there are no fluids.
+  std::vector<sph::Fluid> fluids;  ///< Several fluids, instead of solver.viscosity and rheology.
   std::vector<BodySpec> bodies;
   std::vector<EmitterSpec> emitters;
   std::vector<SinkSpec> sinks;

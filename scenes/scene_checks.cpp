@@ -106,6 +106,30 @@ void check_periods(const Scene& scene, Checker& checker) {
                   "it; set tracking.enabled to false");
 }
 
+void check_fluids(const Scene& scene, Checker& checker) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.fluids.size(); ++i) {
+    const std::string& name = scene.fluids[i].name;
+    checker.require(!name.empty(), "fluids", i, "name", "is empty");
+    checker.require(std::find(names.begin(), names.end(), name) == names.end(), "fluids", i, "name",
+                    fmt::format("\"{}\" is that of an earlier fluid; give each one its own", name));
+    names.push_back(name);
+  }
+  checker.require(names.size() <= 255, "fluids", "has more than 255 entries");
+  const auto known = [&](const std::string& list, std::size_t i, const std::string& name) {
+    const std::string there =
+        names.empty() ? "there are no fluids" : "fluids has " + fmt::format("{}", fmt::join(names, ", "));
+    checker.require(name.empty() || std::find(names.begin(), names.end(), name) != names.end(), list, i, "fluid",
+                    fmt::format("names \"{}\", but {}{}", name, there, did_you_mean(name, names)));
+  };
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) known("bodies", i, scene.bodies[i].body.fluid);
+  for (std::size_t i = 0; i < scene.emitters.size(); ++i) known("emitters", i, scene.emitters[i].emitter.fluid);
+  bool mixture = scene.fluids.size() > 1 || !scene.rheology.is_newtonian();
+  for (const sph::Fluid& fluid : scene.fluids) mixture = mixture || !fluid.rheology.is_newtonian();
+  checker.require(!mixture || scene.solver.viscosity_form == sph::ViscosityForm::monaghan, "simulation.viscosity_form",
+                  "must be \"monaghan\" with several fluids or a viscosity that depends on the shear rate");
+}
+
 void check_solver(const Scene& scene, Checker& checker) {
   const sph::SolverSettings& solver = scene.solver;
   checker.require((solver.domain.min.array() <= solver.domain.max.array()).all(), "simulation.domain.min",
@@ -199,6 +223,7 @@ void check_consistency(const Scene& scene, const JsonNode& root, Problems& probl
   check_particles(scene, checker);
   check_solver(scene, checker);
   check_boundaries(scene, checker);
+  check_fluids(scene, checker);
   check_pictures(scene, checker);
 }
 

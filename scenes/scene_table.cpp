@@ -79,6 +79,27 @@ Table<T> placement_keys(MeshPlacement T::*mesh) {
   };
 }
 
+/// The keys of a viscosity that depends on the shear rate; rheology(T&) is where they go.
+template <class T, class Access>
+Table<T> rheology_keys(const std::string& prefix, Access rheology) {
+  using R = sph::Rheology;
+  const auto member = [rheology](double R::*value) {
+    return [ rheology, value ](auto& object) -> auto& { return rheology(object).*value; };
+  };
+  return {
+      key<T>(prefix + "consistency", member(&R::consistency), number(at_least(0, 1e9)), "Pa s^n",
+             "Consistency K of Herschel and Bulkley's law; 0: density times viscosity, with flow_index 1."),
+      key<T>(prefix + "flow_index", member(&R::flow_index), number(above(0, 5)), "",
+             "Flow index n: below 1 the fluid is thinner, above 1 thicker when sheared. Counts with consistency."),
+      key<T>(prefix + "yield_stress", member(&R::yield_stress), number(at_least(0, 1e9)), "Pa",
+             "Stress below which the fluid hardly flows."),
+      key<T>(prefix + "regularization", member(&R::regularization), number(above(0, 1e9)), "s",
+             "Papanastasiou's m: the fluid yields above shear rates of about 1/m."),
+      key<T>(prefix + "max_viscosity", member(&R::max_viscosity), number(above(0, 1e4)), "m^2/s",
+             "Greatest kinematic viscosity, that of fluid which does not yield."),
+  };
+}
+
 template <class T>
 void append(Table<T>& table, Table<T> more) {
   for (Key<T>& key : more) table.push_back(std::move(key));
@@ -184,10 +205,15 @@ Table<Scene> solver_keys() {
   const auto not_explicit = [](const S& s) {
     return s.solver.viscosity_solver != sph::ViscositySolver::explicit_steps;
   };
+  const auto one_fluid = [](const S& s) { return s.fluids.empty(); };
   Table<S> table = {
+      list<S>("fluids", at(&S::fluids), fluid_table(),
+              "Fluids of different viscosity in one scene, instead of fluid.viscosity and fluid.rheology.")
+          .selecting(),
       key<S>("fluid.density", at(solver, &Settings::rest_density), number(above(0, 1e5)), "kg/m^3", "Density at rest."),
       key<S>("fluid.viscosity", at(solver, &Settings::viscosity), number(at_least(0, 1e4)), "m^2/s",
-             "Kinematic viscosity: water 1e-6, honey 5e-3."),
+             "Kinematic viscosity: water 1e-6, honey 5e-3.")
+          .only_for("scenes without fluids", one_fluid),
       key<S>("fluid.surface_tension", at(solver, &Settings::surface_tension), number(at_least(0, 1e4)), "N/m",
              "Surface tension: water 0.072, honey 0.06; 0: none."),
       key<S>("simulation.gravity", at(solver, &Settings::gravity), vector(1e4), "m/s^2", "Acceleration of gravity."),
@@ -241,6 +267,11 @@ Table<Scene> solver_keys() {
              "Axes along which the domain is periodic: what leaves it comes back through the opposite face. Needs "
              "tracking.enabled false."),
   };
+  Table<S> rheology = rheology_keys<S>("fluid.rheology.", at(&S::rheology));
+  for (std::size_t k = 0; k < rheology.size(); ++k) {
+    table.insert(table.begin() + 3 + static_cast<std::ptrdiff_t>(k),
+                 std::move(rheology[k]).only_for("scenes without fluids", one_fluid));
+  }
   for (Key<S>& key : table) {
     if (key.condition.empty()) key.condition = "particles.source \"simulation\"";
     key.applies = [own = key.applies](const S& s) {
@@ -390,6 +421,17 @@ Table<sph::Box> box_table() {
 
 }  // namespace
 
+Table<sph::Fluid> fluid_table() {
+  using F = sph::Fluid;
+  Table<F> table = {
+      key<F>("name", at(&F::name), text(), "", "By which bodies and emitters refer to it.").is_required(),
+      key<F>("viscosity", at(&F::viscosity), number(at_least(0, 1e4)), "m^2/s",
+             "Kinematic viscosity: water 1e-6, honey 5e-3."),
+  };
+  append<F>(table, rheology_keys<F>("rheology.", at(&F::rheology)));
+  return table;
+}
+
 Table<BodySpec> body_table() {
   using B = BodySpec;
   using F = sph::FluidBody;
@@ -419,6 +461,7 @@ Table<BodySpec> body_table() {
                        key<B>("velocity", at(body, &F::velocity), vector(1e4), "m/s", "Initial velocity."),
                        key<B>("angular_velocity", at(body, &F::angular_velocity), vector(1e4), "rad/s",
                               "Initial spin about the body's centroid."),
+                       key<B>("fluid", at(body, &F::fluid), text(), "", "Name of its fluid; empty: the first one."),
                    });
   return table;
 }
@@ -463,6 +506,7 @@ Table<EmitterSpec> emitter_table() {
           key<E>("stop", at(emitter, &J::stop), number(at_least(0, 1e30)), "s", "Time at which it stops."),
           key<E>("max_particles", at(emitter, &J::max_particles), natural(), "",
                  "Most particles that it pours, in whole layers; 0: any number."),
+          key<E>("fluid", at(emitter, &J::fluid), text(), "", "Name of its fluid; empty: the first one."),
       });
   return table;
 }

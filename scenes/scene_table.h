@@ -54,6 +54,7 @@ using Table = std::vector<Key<T>>;
 /// The tables. `vocabulary` gives the names that only the program knows.
 Table<Scene> scene_table(const SceneVocabulary& vocabulary);
 Table<BodySpec> body_table();
+Table<sph::Fluid> fluid_table();
 Table<EmitterSpec> emitter_table();
 Table<SinkSpec> sink_table();
 Table<BoundarySpec> boundary_table();

@@ -122,7 +122,7 @@ std::vector<FluidPoint> fill_bodies(const std::vector<FluidBody>& bodies, double
     for (const Vec3& p : positions) centroid += p / static_cast<double>(positions.size());
     for (const Vec3& p : positions) {
       const Vec3 inside = periodic.wrap(p);
-      points.push_back({inside, bodies[b].velocity + bodies[b].angular_velocity.cross(p - centroid)});
+      points.push_back({inside, bodies[b].velocity + bodies[b].angular_velocity.cross(p - centroid), b});
       fluid.insert(inside);
     }
   }

@@ -11,6 +11,7 @@ namespace flowskin::sph {
 struct FluidPoint {
   Vec3 position;  ///< m
   Vec3 velocity;  ///< m/s
+  std::size_t body = 0;
 };
 
 /// Particles of all bodies, body after body. Each body is filled with a lattice of the spacing that starts half a

@@ -36,6 +36,7 @@ class JetEmitter {
   /// @return places that stayed empty
   std::size_t pour(double time, const Surroundings& surroundings, std::vector<Particle>& particles);
 
+  const std::string& fluid() const { return emitter_.fluid; }
   /// Velocity of the fluid in the nozzle (m/s): zero while it is closed.
   Vec3 velocity() const { return closed_ ? Vec3::Zero().eval() : velocity_; }
   std::size_t layer_size() const { return outlet_.offsets().size(); }

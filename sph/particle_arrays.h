@@ -22,6 +22,8 @@ struct ParticleArrays {
   std::vector<ParticleRates> rates;
   std::vector<float> wall_distances;    ///< m; see PairData
   std::vector<Eigen::Vector3f> shifts;  ///< XSPH; empty where it is off
+  std::vector<std::uint8_t> fluids;     ///< Index of the fluid; empty where there is only one
+  std::vector<float> viscosities;       ///< m^2/s; empty where all have the same at all times
 
   std::size_t size() const { return ids.size(); }
 
@@ -39,9 +41,11 @@ struct ParticleArrays {
     if (with_shift) shifts.push_back(Eigen::Vector3f::Zero());
   }
 
-  void reserve(std::size_t count, bool with_shifts) {
+  void reserve(std::size_t count, bool with_shifts, bool with_fluids, bool with_viscosities) {
     for_each([&](auto& values) { values.reserve(count); });
     if (!with_shifts) shifts = {};
+    if (!with_fluids) fluids = {};
+    if (!with_viscosities) viscosities = {};
   }
 
   /// Keeps the particles order[0], order[1], ... in this order and drops the others.
@@ -84,6 +88,8 @@ struct ParticleArrays {
     function(rates);
     function(wall_distances);
     function(shifts);
+    function(fluids);
+    function(viscosities);
   }
 
   // One raw buffer serves all arrays; their elements are plain numbers. Large ones go in two halves, so that the buffer

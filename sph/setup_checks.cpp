@@ -8,6 +8,7 @@
 
 #include "sph/emitter_outlet.h"
 #include "sph/fluid_sinks.h"
+#include "sph/rheology.h"
 #include "sph/surface_tension.h"
 
 namespace flowskin::sph {
@@ -99,10 +100,43 @@ void check_motion(const Boundary& boundary, const std::string& name) {
   if (!finite) throw SettingsError(name + ": its motion has a number that is not finite");
 }
 
+void check_fluids(const SimulationSetup& setup) {
+  const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
+  const std::size_t count = std::max<std::size_t>(1, setup.fluids.size());
+  if (count > 255) throw SettingsError("there are " + std::to_string(count) + " fluids: expected at most 255");
+  for (const Fluid& f : setup.fluids) {
+    const Rheology& law = f.rheology;
+    const auto expect = [&](bool holds, const char* what) {
+      if (!holds) throw SettingsError("fluid \"" + f.name + "\": " + what);
+    };
+    expect(std::isfinite(f.viscosity) && f.viscosity >= 0, "its viscosity must be 0 m^2/s or more");
+    expect(law.consistency >= 0 && law.yield_stress >= 0, "its consistency and yield stress must be 0 or more");
+    expect(law.flow_index > 0 && law.flow_index <= 5, "its flow index must be above 0 and at most 5");
+    expect(positive(law.regularization) && positive(law.max_viscosity),
+           "its regularization and max_viscosity must be greater than 0");
+  }
+  const auto check = [&](const std::string& fluid, const std::string& name) {
+    if (index_of(setup.fluids, fluid) < count) return;
+    throw SettingsError(name + ": there is no fluid named \"" + fluid + "\"");
+  };
+  for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
+    check(setup.bodies[b].fluid, "fluid body " + std::to_string(b + 1));
+  }
+  for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
+    check(setup.emitters[e].fluid, "emitter " + std::to_string(e + 1));
+  }
+  if (is_mixture(setup.fluids) && setup.settings.viscosity_form == ViscosityForm::morris) {
+    throw SettingsError(
+        "viscosity_form morris does not know several fluids or viscosities that depend on the shear rate: choose "
+        "monaghan");
+  }
+}
+
 }  // namespace
 
 void check_setup(const SimulationSetup& setup) {
   check_settings(setup.settings);
+  check_fluids(setup);
   check_domain(setup.settings);
   if (setup.bodies.empty() && setup.emitters.empty()) {
     throw SettingsError("nothing to simulate: give at least one fluid body or emitter");
@@ -167,6 +201,8 @@ SolverSettings with_automatic_values(const SimulationSetup& setup, const Box& fl
     if (s.max_speed == 0) s.max_speed = 50 * s.spacing;
   }
   if (s.speed_of_sound == 0) s.speed_of_sound = std::max(10 * s.max_speed, capillary_speed_of_sound(s));
+  if (!setup.fluids.empty()) s.viscosity = 0;
+  for (const Fluid& fluid : setup.fluids) s.viscosity = std::max(s.viscosity, greatest_viscosity(fluid));
   if (s.viscosity_solver == ViscositySolver::automatic) {
     const double h = s.support_radius * s.spacing / 2;
     const double longest = std::min(s.acoustic_cfl * h / s.speed_of_sound, s.max_time_step);

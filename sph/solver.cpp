@@ -49,6 +49,8 @@ FluidState Solver::state() const {
     state.velocities.push_back(particles.velocities[i]);
     state.rest_positions.push_back(particles.rest_positions[i]);
     state.densities.push_back(impl_->settings().rest_density * (1 + static_cast<double>(particles.compressions[i])));
+    if (!particles.fluids.empty()) state.fluids.push_back(particles.fluids[i]);
+    if (!particles.viscosities.empty()) state.viscosities.push_back(particles.viscosities[i]);
   }
   return state;
 }

@@ -83,6 +83,25 @@ struct SolverSettings {
   std::array<bool, 3> periodic{};
 };
 
+/// How the viscosity depends on the shear rate g = sqrt(2 D:D): Herschel and Bulkley's law, regularised by
+/// Papanastasiou [1987], eta = K g^(n - 1) + tau_y (1 - exp(-m g)) / g, at most rest density times max_viscosity.
+struct Rheology {
+  double consistency = 0;       ///< K (Pa s^n); 0: n = 1 and K = rest density times viscosity
+  double flow_index = 1;        ///< n; below 1 thinner, above 1 thicker when sheared
+  double yield_stress = 0;      ///< tau_y (Pa): below it the fluid hardly flows
+  double regularization = 100;  ///< m (s): yields above shear rates of about 1/m
+  double max_viscosity = 10;    ///< Kinematic (m^2/s); of all that does not yield
+
+  bool is_newtonian() const { return consistency == 0 && yield_stress == 0; }
+};
+
+/// One of the fluids of a set-up. All have the rest density of the settings.
+struct Fluid {
+  std::string name;         ///< By which bodies and emitters refer to it.
+  double viscosity = 1e-6;  ///< Kinematic viscosity (m^2/s), laminar.
+  Rheology rheology;
+};
+
 /// A shape filled with fluid at the start, sampled on a lattice of the solver's spacing.
 struct FluidBody {
   enum class Shape { block, ball, mesh };
@@ -94,6 +113,7 @@ struct FluidBody {
   std::vector<Box> cuts;                 ///< Boxes that are cut out of the shape (m), closed: their faces stay empty.
   Vec3 velocity = Vec3::Zero();          ///< Initial velocity (m/s).
   Vec3 angular_velocity = Vec3::Zero();  ///< Initial spin about the body's centroid (rad/s).
+  std::string fluid;                     ///< Name of its fluid; empty: the first one.
 };
 
 /// An outlet that pours fluid along its axis.
@@ -109,6 +129,7 @@ struct Emitter {
   Vec3 up = Vec3::Zero();           ///< Rectangle: direction of the edge `height`; zero: z for jets along y, else y.
   TriangleMesh mesh{};              ///< Mesh: its shadow along the direction pours, from its foremost point on (m).
   std::uint64_t max_particles = 0;  ///< Pours whole layers up to so many particles; 0: any number.
+  std::string fluid{};              ///< Name of its fluid; empty: the first one.
 };
 
 /// A region that removes the fluid which comes into it: at the latest when it is half a skin inside.
@@ -134,6 +155,7 @@ struct Boundary {
 /// Everything a simulation starts from.
 struct SimulationSetup {
   SolverSettings settings;
+  std::vector<Fluid> fluids;  ///< Empty: one, with the viscosity of the settings; else that one counts for nothing.
   std::vector<FluidBody> bodies;
   std::vector<Emitter> emitters;
   std::vector<Boundary> boundaries;
@@ -148,7 +170,9 @@ struct FluidState {
   std::vector<Vec3> velocities;  ///< m/s
   std::vector<Vec3>
       rest_positions;  ///< Place of the material in the first frame (m); emitted particles continue the jet backwards.
-  std::vector<double> densities;  ///< kg/m^3
+  std::vector<double> densities;     ///< kg/m^3
+  std::vector<std::uint8_t> fluids;  ///< Index into SimulationSetup::fluids; empty: there is only one.
+  std::vector<float> viscosities;    ///< Kinematic (m^2/s); empty: the same for all.
 };
 
 /// Which limit set the time step, and all of them (s).

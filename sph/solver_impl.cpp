@@ -11,6 +11,7 @@
 #include "sph/fluid_bodies.h"
 #include "sph/fluid_sinks.h"
 #include "sph/parallel.h"
+#include "sph/rheology.h"
 #include "sph/setup_checks.h"
 
 namespace flowskin::sph {
@@ -91,7 +92,9 @@ SolverImpl::SolverImpl(SimulationSetup setup)
   sinks_ = std::move(setup.sinks);
   for (Sink& sink : sinks_) sink.box = sink.shape == Sink::Shape::mesh ? bounding_box(sink.mesh) : sink.box;
   settings_ = complete_settings(setup, points, boundary_.greatest_speed());
-  coefficients_ = PairCoefficients(settings_, wall_kernel_);
+  if (is_mixture(setup.fluids)) fluids_ = setup.fluids;
+  for (const Fluid& fluid : fluids_) shear_dependent_ = shear_dependent_ || !fluid.rheology.is_newtonian();
+  coefficients_ = PairCoefficients(settings_, wall_kernel_, !fluids_.empty());
   surface_tension_ = SurfaceTension(settings_);
   mass_ = settings_.rest_density * std::pow(settings_.spacing, 3);
   smoothing_length_ = 0.5 * settings_.support_radius * settings_.spacing;
@@ -101,10 +104,9 @@ SolverImpl::SolverImpl(SimulationSetup setup)
   }
   boundary_.place_at_origin(origin_);
 
-  particles_.reserve(points.size(), settings_.xsph > 0);
-  for (const FluidPoint& p : points) {
-    particles_.append(next_id_++, p.position, p.velocity, p.position, settings_.xsph > 0);
-  }
+  particles_.reserve(points.size(), settings_.xsph > 0, fluids_.size() > 1, !fluids_.empty());
+  for (const FluidPoint& p : points)
+    add_particle(p.position, p.velocity, p.position, index_of(fluids_, setup.bodies[p.body].fluid));
   pour_emitters();
   for (std::size_t i = 0; i < particles_.size(); ++i) fill_pack(i, 0);
   rebuild_lists();
@@ -212,17 +214,10 @@ void SolverImpl::kick_implicitly(double dt) {
   std::vector<std::uint8_t> fixed;
   if (!emitters_.empty()) fixed.resize(particles_.size());
   for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = nozzle_around(particles_.positions[i]) != nullptr;
-  const ImplicitViscosity::Result result = implicit_viscosity_.solve(coefficients_, settings_,
-                                                                     {particles_.packs,
-                                                                      &clusters_,
-                                                                      &fluid_lists_,
-                                                                      boundary_.packs(),
-                                                                      &wall_lists_,
-                                                                      {},
-                                                                      particles_.rates,
-                                                                      fixed,
-                                                                      dt,
-                                                                      particles_.velocities});
+  const ImplicitViscosity::Result result =
+      implicit_viscosity_.solve(coefficients_, settings_,
+                                {particles_.packs, &clusters_, &fluid_lists_, boundary_.packs(), &wall_lists_,
+                                 particles_.viscosities, particles_.rates, fixed, dt, particles_.velocities});
   statistics_.viscosity_iterations += static_cast<std::uint64_t>(result.iterations);
   statistics_.viscosity_tolerance = result.tolerance;
   if (result.converged) return;
@@ -252,6 +247,15 @@ void SolverImpl::kick_and_drift(double dt) {
   some_outside_ = outside;
 }
 
+void SolverImpl::add_particle(const Vec3& position, const Vec3& velocity, const Vec3& rest_position,
+                              std::size_t fluid) {
+  particles_.append(next_id_++, position, velocity, rest_position, settings_.xsph > 0);
+  if (fluids_.size() > 1) particles_.fluids.push_back(static_cast<std::uint8_t>(fluid));
+  if (fluids_.empty()) return;
+  const double viscosity = viscosity_at(fluids_[fluid], settings_.rest_density, 0);
+  particles_.viscosities.push_back(static_cast<float>(viscosity));
+}
+
 void SolverImpl::pour_emitters() {
   std::vector<JetEmitter::Particle> poured;
   for (JetEmitter& emitter : emitters_) {
@@ -263,7 +267,7 @@ void SolverImpl::pour_emitters() {
     }
     statistics_.not_emitted += emitter.pour(time_, surroundings, poured);
     for (const JetEmitter::Particle& p : poured) {
-      particles_.append(next_id_++, p.position, emitter.velocity(), p.rest_position, settings_.xsph > 0);
+      add_particle(p.position, emitter.velocity(), p.rest_position, index_of(fluids_, emitter.fluid()));
       fill_pack(particles_.size() - 1, 0);
     }
     statistics_.emitted += poured.size();
@@ -411,11 +415,13 @@ void SolverImpl::collect_wall_triangles() {
 
 void SolverImpl::evaluate_forces() {
   const Stopwatch watch(statistics_.seconds_forces);
-  const PairData data{particles_.packs,  &clusters_,
-                      &fluid_lists_,     boundary_.packs(),
-                      &wall_lists_,      static_cast<float>(statistics_.last_step.step),
-                      particles_.rates,  particles_.wall_distances,
-                      particles_.shifts, !is_implicit()};
+  const PairData data{particles_.packs,      &clusters_,
+                      &fluid_lists_,         boundary_.packs(),
+                      &wall_lists_,          static_cast<float>(statistics_.last_step.step),
+                      particles_.rates,      particles_.wall_distances,
+                      particles_.shifts,     !is_implicit(),
+                      particles_.viscosities};
+  if (shear_dependent_) update_viscosities(data);
   if (settings_.density_method == DensityMethod::summation) sum_densities(coefficients_, settings_, data);
   compute_forces(coefficients_, settings_, data);
   if (surface_tension_.active()) {
@@ -423,6 +429,16 @@ void SolverImpl::evaluate_forces() {
     add_surface_tension(surface_tension_,
                         {particles_.packs, &clusters_, &tension_lists_, boundary_.packs(), boundary_.adhesions(),
                          &adhesion_lists_, surface_stresses_, particles_.rates});
+  }
+}
+
+void SolverImpl::update_viscosities(const PairData& data) {
+  std::vector<float>& values = particles_.viscosities;
+  find_shear_rates(coefficients_, settings_, data, values);
+#pragma omp parallel for schedule(static) num_threads(threads_for(values.size()))
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Fluid& fluid = fluids_[particles_.fluids.empty() ? 0 : particles_.fluids[i]];
+    values[i] = static_cast<float>(viscosity_at(fluid, settings_.rest_density, static_cast<double>(values[i])));
   }
 }
 

@@ -61,6 +61,7 @@ class SolverImpl {
   bool is_implicit() const { return settings_.viscosity_solver == ViscositySolver::implicit; }
   BoundaryParticles::Hold drift_particle(std::size_t i, std::size_t cluster, double dt);
   void fill_pack(std::size_t i, double dt);
+  void add_particle(const Vec3& position, const Vec3& velocity, const Vec3& rest_position, std::size_t fluid);
   void pour_emitters();
   bool outside_domain(const Vec3& p) const;
   bool some_to_drain() const;
@@ -74,12 +75,16 @@ class SolverImpl {
   void build_lists(const PointView& places);
   void collect_wall_triangles();
   void evaluate_forces();
+  /// Viscosities of fluids that depend on the shear rate, from the velocities in the packs.
+  void update_viscosities(const PairData& data);
   /// Second half of the kick, the compression, and the limits of what is believable.
   void finish_step(double dt);
   [[noreturn]] void throw_blow_up(std::size_t particle) const;
   const JetEmitter* nozzle_around(const Vec3& p) const;
 
   SolverSettings settings_;
+  std::vector<Fluid> fluids_;     // empty: one Newtonian fluid
+  bool shear_dependent_ = false;  // some fluid's viscosity depends on the shear rate
   PeriodicBox periodic_;
   double mass_ = 0, smoothing_length_ = 0;
   double time_ = 0;

@@ -25,14 +25,16 @@ struct ParticleState {
   std::vector<double> densities;     ///< kg/m^3; 0 where the source knows none
   /// Share of each particle in the field, where two recorded states are blended; empty: all of each.
   std::vector<double> weights{};
-  std::size_t earlier_count = 0;  ///< Of blended states: so many particles, the first, are of the earlier one.
-  bool has_velocities = true;     ///< false: nobody knows them, they are zero
-  bool has_material = true;       ///< false: rest positions are unknown and stand for the positions
-  bool has_lasting_ids = true;    ///< false: ids do not name the same particle in the next state
+  std::vector<std::uint8_t> fluids{};  ///< Index of each particle's fluid; empty: there is only one
+  std::vector<float> viscosities{};    ///< Kinematic (m^2/s); empty: the same for all
+  std::size_t earlier_count = 0;       ///< Of blended states: so many particles, the first, are of the earlier one.
+  bool has_velocities = true;          ///< false: nobody knows them, they are zero
+  bool has_material = true;            ///< false: rest positions are unknown and stand for the positions
+  bool has_lasting_ids = true;         ///< false: ids do not name the same particle in the next state
 
   template <class Archive>
   void visit(Archive& archive) {
-    archive(time, ids, positions, velocities, rest_positions, densities, weights, earlier_count);
+    archive(time, ids, positions, velocities, rest_positions, densities, weights, fluids, viscosities, earlier_count);
     archive(has_velocities, has_material, has_lasting_ids);
   }
 };

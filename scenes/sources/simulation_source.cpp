@@ -15,6 +15,10 @@ sph::SimulationSetup setup_of(const Scene& scene) {
   sph::SimulationSetup setup;
   setup.settings = scene.solver;
   setup.settings.spacing = scene.particles.spacing;
+  setup.fluids = scene.fluids;
+  if (setup.fluids.empty() && !scene.rheology.is_newtonian()) {
+    setup.fluids.push_back({"the fluid", scene.solver.viscosity, scene.rheology});
+  }
   for (const BodySpec& body : scene.bodies) setup.bodies.push_back(body.body);
   for (const EmitterSpec& emitter : scene.emitters) setup.emitters.push_back(emitter.emitter);
   for (const SinkSpec& sink : scene.sinks) setup.sinks.push_back(sink.sink);
@@ -58,6 +62,8 @@ void SimulationSource::take_state() {
             std::move(fluid.velocities),
             std::move(fluid.rest_positions),
             std::move(fluid.densities)};
+  state_.fluids = std::move(fluid.fluids);
+  state_.viscosities = std::move(fluid.viscosities);
 }
 
 SourceStatistics SimulationSource::statistics() const {

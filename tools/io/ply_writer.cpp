@@ -207,7 +207,7 @@ void write_particles_ply(const std::filesystem::path& file, const ParticleFrame&
   const scenes::ParticleState& state = frame.state;
   const IdColumn id_column(state.ids, file);
   ByteBuffer ply;
-  ply.reserve(2000 + 56 * state.positions.size());
+  ply.reserve(2000 + 61 * state.positions.size());
   begin_header(ply, "particles", state.time);
   ply.text("comment radius ");
   ply.number(frame.radius);
@@ -216,6 +216,8 @@ void write_particles_ply(const std::filesystem::path& file, const ParticleFrame&
   add_properties(ply, "float", {"x", "y", "z", "vx", "vy", "vz", "density", "rest_x", "rest_y", "rest_z"});
   ply.text(id_column.property());
   add_properties(ply, "uchar", {"red", "green", "blue"});
+  if (!state.fluids.empty()) add_properties(ply, "uchar", {"fluid"});
+  if (!state.viscosities.empty()) add_properties(ply, "float", {"viscosity"});
   ply.text("end_header\n");
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     ply.vec3(state.positions[i]);
@@ -224,6 +226,8 @@ void write_particles_ply(const std::filesystem::path& file, const ParticleFrame&
     ply.vec3(state.rest_positions[i]);
     id_column.add(ply, state.ids[i]);
     add_color(ply, frame.colors[i]);
+    if (!state.fluids.empty()) ply.byte(state.fluids[i]);
+    if (!state.viscosities.empty()) ply.f32(state.viscosities[i]);
   }
   write_file(file, ply.view());
 }

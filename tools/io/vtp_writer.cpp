@@ -151,6 +151,14 @@ void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame&
   arrays.vectors(xml, "rest_position", state.rest_positions);
   ByteBuffer& densities = arrays.begin(xml, "density", "Float32", 1, state.densities.size(), 4);
   for (const double density : state.densities) densities.f32(static_cast<float>(density));
+  if (!state.fluids.empty()) {
+    ByteBuffer& fluids = arrays.begin(xml, "fluid", "UInt8", 1, state.fluids.size(), 1);
+    for (const std::uint8_t fluid : state.fluids) fluids.byte(fluid);
+  }
+  if (!state.viscosities.empty()) {
+    ByteBuffer& viscosities = arrays.begin(xml, "viscosity", "Float32", 1, state.viscosities.size(), 4);
+    for (const float viscosity : state.viscosities) viscosities.f32(viscosity);
+  }
   arrays.ids(xml, state.ids);
   xml.text("      </PointData>\n      <Points>\n");
   arrays.vectors(xml, "Points", state.positions);

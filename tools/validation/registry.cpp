@@ -11,12 +11,12 @@ namespace flowskin::tools {
 ValidationCase conservation_case();
 ValidationCase oscillating_drop_case();
 ValidationCase square_drop_case();
+ValidationCase rheology_case();
+ValidationCase bingham_slump_case();
 
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases{
-      conservation_case(),
-      oscillating_drop_case(),
-      square_drop_case(),
+      conservation_case(), oscillating_drop_case(), square_drop_case(), rheology_case(), bingham_slump_case(),
   };
   return cases;
 }
