@@ -88,7 +88,9 @@ TEST(MovingWall, SweepsOverNothing) {
       p.place = target;
       const Vec3 rest = wall.pose().to_rest(p.place);
       p.swept_off = p.swept_off || std::max(std::abs(rest.x()), std::abs(rest.z())) > 1;
-      if (!p.swept_off) EXPECT_GT(rest.y() * p.side, 0);
+      if (!p.swept_off) {
+        EXPECT_GT(rest.y() * p.side, 0);
+      }
     }
   }
   EXPECT_GT(held, 100);
