@@ -68,11 +68,13 @@ void run_shear_rates(const PairCoefficients& c, const PairData& data, std::span<
 #pragma omp parallel for schedule(dynamic, 16) num_threads(threads_for(data.fluid.size()))
   for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
-    std::array<Float8, 6> i{};
+    std::array<std::array<float, PointCluster::width>, 6> rows;
     for (std::uint32_t k = 0; k < PointCluster::width; ++k) {
       const FluidPack& p = data.fluid[first + (k < count ? k : 0)];
-      i[0][k] = p.x, i[1][k] = p.y, i[2][k] = p.z, i[3][k] = p.vx, i[4][k] = p.vy, i[5][k] = p.vz;
+      rows[0][k] = p.x, rows[1][k] = p.y, rows[2][k] = p.z, rows[3][k] = p.vx, rows[4][k] = p.vy, rows[5][k] = p.vz;
     }
+    std::array<Float8, 6> i{};
+    for (std::size_t a = 0; a < i.size(); ++a) i[a] = load8(rows[a].data());
     Fit fit;
     for (const std::uint32_t index : data.fluid_lists->of_cluster(cluster)) {
       const FluidPack& j = data.fluid[index];
