@@ -42,17 +42,17 @@ Scene coarse(Scene scene) {
               : b.shape == sph::FluidBody::Shape::ball ? 4.2 * std::pow(b.radius, 3)
                                                        : 0.5 * box_volume(b.mesh.positions);
   }
-  for (const auto& emitter : scene.emitters) least = std::max(least, emitter.radius / 4);
+  for (const auto& emitter : scene.emitters) least = std::max(least, emitter.emitter.radius / 4);
   scene.particles.spacing = std::max(least, std::cbrt(volume / 1200));
   scene.solver.spacing = scene.particles.spacing;
   return scene;
 }
 
-struct Run {
+struct Course {
   std::unique_ptr<scenes::ParticleSource> source;
   std::unique_ptr<tracking::Tracker> tracker;
 
-  explicit Run(const Scene& scene) : source(scenes::make_source(scene)) {
+  explicit Course(const Scene& scene) : source(scenes::make_source(scene)) {
     Scene with_method = scene;
     with_method.tracking.velocity = tools::velocity_method_for(scene.tracking.velocity, source->state());
     tracker =
@@ -95,14 +95,14 @@ TEST_P(ResumeScenes, GoesOnBitForBit) {
   const double step = 1 / scene.frame_rate / scene.tracking.steps_per_frame;
   const double start = std::min(0.3, 0.3 * scene.frames / scene.frame_rate);
   omp_set_num_threads(2);
-  Run straight(scene);
+  Course straight(scene);
   for (const double time : {start, start + step}) straight.advance(time);
 
   // Saved between two states of the tracker, and in the middle of a step of the source.
   int solver_steps = 3;
   straight.source->advance_towards(start + 2 * step, [&] { return solver_steps-- == 0; });
   const std::string bytes = straight.saved();
-  Run resumed(scene);
+  Course resumed(scene);
   resumed.restore(bytes);
   EXPECT_TRUE(resumed.saved() == bytes);
   for (int k = 2; k <= 4; ++k) {
