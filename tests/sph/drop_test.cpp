@@ -71,7 +71,10 @@ TEST(Drop, NoTensionNoForce) {
   const FluidState before = solver.state();
   solver.advance_to(0.2);
   const FluidState after = solver.state();
-  for (std::size_t i = 0; i < before.positions.size(); ++i) EXPECT_EQ(before.positions[i], after.positions[i]);
+  // The density of the lattice is that of rest up to the rounding of floats.
+  for (std::size_t i = 0; i < before.positions.size(); ++i) {
+    EXPECT_LT((before.positions[i] - after.positions[i]).norm(), 1e-4 * setup.settings.spacing);
+  }
 }
 
 TEST(Drop, CapillaryLimitOfTheStep) {
