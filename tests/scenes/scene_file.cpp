@@ -112,7 +112,8 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
         lines[skip].find("\": ") != std::string::npos && lines[skip].find_last_of("{[") != lines[skip].size() - 1;
     const bool is_default = lines[skip].find("[0, 0, 0]") != std::string::npos ||
                             lines[skip].find("\"simulation\",") != std::string::npos ||
-                            lines[skip].find("\"cuts\": []") != std::string::npos;
+                            lines[skip].find("\"cuts\": []") != std::string::npos ||
+                            lines[skip].find("\"fluids\": []") != std::string::npos;
     if (!is_leaf || is_default) continue;
     std::string text;
     for (std::size_t i = 0; i < lines.size(); ++i) {
