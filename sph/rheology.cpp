@@ -88,7 +88,8 @@ void run_shear_rates(const PairCoefficients& c, const PairData& data, std::span<
       const auto [dx, dy, dz] = image.difference<periodic>(i[0], i[1], i[2], b);
       const Float8 shape = Kernel::shape(sqrt(dx * dx + dy * dy + dz * dz) * wall_unit);
       const Float8 w = broadcast(wall_weight * b.volume * b.stick) * shape;
-      fit.add(w, unit * dx, unit * dy, unit * dz, i[3], i[4], i[5]);
+      fit.add(w, unit * dx, unit * dy, unit * dz, i[3] - broadcast(b.vx), i[4] - broadcast(b.vy),
+              i[5] - broadcast(b.vz));
     }
     const Float8 rate = broadcast(c.inverse_support) * fit.shear_rate();
     for (std::uint32_t k = 0; k < count; ++k) shear_rates[first + k] = rate[k];
