@@ -212,6 +212,7 @@ void load_mesh(const Scene& scene, const MeshPlacement& placement, const std::st
 }  // namespace
 
 std::string absolute_name(const std::string& directory, const std::string& file) {
+  if (file.empty()) return file;
   const std::filesystem::path path(file);
   return (path.is_absolute() ? path : std::filesystem::absolute(std::filesystem::path(directory) / path))
       .lexically_normal()

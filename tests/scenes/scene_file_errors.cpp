@@ -161,7 +161,7 @@ TEST(SceneFileErrors, Contradictions) {
   EXPECT_THAT(error_of(small_scene(R"("boundaries": [{"file": "meshes/stairs.obj", "keyframes": [{}]}])")),
               HasSubstr("boundaries[0].keyframes[0].time is missing"));
   EXPECT_THAT(error_of(small_scene(R"("simulation": {"periodic": [true, false]})")),
-              HasSubstr("simulation.periodic is a list; expected 3 times true or false"));
+              HasSubstr("simulation.periodic is a list of 2; expected 3 times true or false"));
   EXPECT_THAT(error_of(small_scene(R"("simulation": {"periodic": [true, false, false]},
                                       "tracking": {"enabled": false})")),
               HasSubstr("simulation.periodic is true for x, where simulation.domain is 0 m long"));
