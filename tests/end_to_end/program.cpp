@@ -115,8 +115,11 @@ std::string bytes(const fs::path& file) {
 
 std::vector<std::string> files_below(const fs::path& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file()) names.push_back(fs::relative(entry.path(), folder).string());
+  // A running program renames and removes files meanwhile: nothing here asks for a file that may be gone.
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (std::error_code gone; entry->is_regular_file(gone))
+      names.push_back(entry->path().lexically_relative(folder).string());
   std::sort(names.begin(), names.end());
   return names;
 }
