@@ -59,7 +59,10 @@ BoundaryParticles::BoundaryParticles(const std::vector<Boundary>& boundaries, co
     append_samples(sample_surface(resting.back(), sample_spacing_, periodic), boundary);
   }
   append_volumes(0);
-  if (!resting.empty()) guard_ = WallGuard(resting, 2 * settings.spacing, periodic);
+  if (!resting.empty()) {
+    guard_ = WallGuard(resting, 2 * settings.spacing, periodic);
+    guard_.find_gaps(positions_, sample_spacing_, settings.spacing, periodic);
+  }
   for (const Boundary& boundary : boundaries) {
     if (!boundary.motion.moves()) continue;
     // Sampled at rest; a wall's volumes are its own, since it may leave the others.
@@ -68,8 +71,8 @@ BoundaryParticles::BoundaryParticles(const std::vector<Boundary>& boundaries, co
     const std::size_t first = positions_.size();
     append_samples(samples, boundary);
     append_volumes(first);
-    movers_.emplace_back(boundary.motion, boundary.surface_velocity, mesh, samples, first, 2 * settings.spacing,
-                         periodic);
+    movers_.emplace_back(boundary.motion, boundary.surface_velocity, mesh, samples, first, sample_spacing_,
+                         settings.spacing, periodic);
     greatest_speed_ = std::max(greatest_speed_, movers_.back().greatest_speed() + boundary.surface_velocity.norm());
   }
   scale_adhesions(settings, wall);
@@ -148,50 +151,61 @@ void BoundaryParticles::mark_build(std::size_t fluid_clusters) {
   build_time_ = time_;
   triangles_.resize(fluid_clusters);
   for (auto& triangles : triangles_) triangles.clear();
+  near_gap_.assign(fluid_clusters, 0);
   for (MovingWall& wall : movers_) wall.mark_build(fluid_clusters);
   if (!movers_.empty()) clusters_.assign(packs_, static_cast<float>(6 * sample_spacing_));
 }
 
 void BoundaryParticles::collect_triangles(std::size_t cluster, const Vec3& low, const Vec3& high, double margin) {
-  guard_.query(low - Vec3::Constant(margin), high + Vec3::Constant(margin), triangles_[cluster]);
-  for (MovingWall& wall : movers_) wall.collect_triangles(cluster, low, high, margin);
+  bool near_gap = guard_.collect(low, high, margin, triangles_[cluster]);
+  for (MovingWall& wall : movers_) near_gap = wall.collect_triangles(cluster, low, high, margin) || near_gap;
+  near_gap_[cluster] = near_gap;
 }
 
-BoundaryParticles::Hold BoundaryParticles::hold_near(const Vec3& from, std::size_t cluster, Vec3& target,
-                                                     Vec3& velocity) const {
+Hold BoundaryParticles::hold_near(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const {
   if (!movers_.empty()) return hold_between(from, cluster, target, velocity);
   if (triangles_[cluster].empty()) return {};
-  const WallGuard::Crossing crossing = guard_.check(from, target, triangles_[cluster]);
-  if (!crossing.crossed) return {};
+  const bool near_gap = near_gap_[cluster] != 0;
+  const WallGuard::Crossing crossing = guard_.check(from, target, triangles_[cluster], near_gap);
+  if (!crossing.crossed) return {.kept_out = near_gap && keep_out(from, cluster, target, velocity)};
   velocity -= std::min(0.0, velocity.dot(crossing.normal)) * crossing.normal;
   target = from;
-  return {true, false};
+  return {.held = true};
+}
+
+bool BoundaryParticles::keep_out(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const {
+  Vec3 normal;
+  if (!guard_.keep_out(from, triangles_[cluster], target, normal)) return false;
+  velocity -= std::min(0.0, velocity.dot(normal)) * normal;
+  return true;
 }
 
 // Wall after wall corrects the path until none objects. A wall that moves may carry a particle into one that rests:
 // there it may slide along.
-BoundaryParticles::Hold BoundaryParticles::hold_between(const Vec3& from, std::size_t cluster, Vec3& target,
-                                                        Vec3& velocity) const {
+Hold BoundaryParticles::hold_between(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const {
   constexpr int rounds = 4;
+  const bool near_gap = near_gap_[cluster] != 0;
   Hold result;
   for (int round = 0; round < rounds; ++round) {
-    bool corrected = false;
-    const WallGuard::Crossing crossing = guard_.check(from, target, triangles_[cluster]);
+    Hold now;
+    const WallGuard::Crossing crossing = guard_.check(from, target, triangles_[cluster], near_gap);
     if (crossing.crossed) {
-      corrected = true;
+      now.held = true;
       velocity -= std::min(0.0, velocity.dot(crossing.normal)) * crossing.normal;
       const Vec3 way = target - from;
       target = round == 0 ? from : Vec3(from + way - std::min(0.0, way.dot(crossing.normal)) * crossing.normal);
+    } else if (near_gap) {
+      now.kept_out = keep_out(from, cluster, target, velocity);
     }
-    for (const MovingWall& wall : movers_) corrected = wall.hold(from, cluster, target, velocity) || corrected;
-    if (!corrected) return result;
-    result.held = true;
+    for (const MovingWall& wall : movers_) now.add(wall.hold(from, cluster, target, velocity));
+    if (!now.any()) return result;
+    result.add(now);
   }
   // No way out between walls that close in. Those that rest hold.
-  if (guard_.check(from, target, triangles_[cluster]).crossed) target = from;
+  if (guard_.check(from, target, triangles_[cluster], near_gap).crossed) target = from;
   Vec3 end = target, unused = velocity;
   for (const MovingWall& wall : movers_) {
-    result.squeezed_through = wall.hold(from, cluster, end, unused) || result.squeezed_through;
+    result.squeezed_through = wall.hold(from, cluster, end, unused).held || result.squeezed_through;
   }
   return result;
 }
@@ -199,7 +213,7 @@ BoundaryParticles::Hold BoundaryParticles::hold_between(const Vec3& from, std::s
 std::size_t BoundaryParticles::memory_bytes() const {
   std::size_t bytes = positions_.capacity() * sizeof(Vec3) + packs_.capacity() * sizeof(WallPack) +
                       adhesions_.capacity() * sizeof(float) + clusters_.memory_bytes() + guard_.memory_bytes() +
-                      triangles_.capacity() * sizeof(decltype(triangles_)::value_type);
+                      triangles_.capacity() * sizeof(decltype(triangles_)::value_type) + near_gap_.capacity();
   for (const auto& triangles : triangles_) bytes += triangles.capacity() * sizeof(std::uint32_t);
   for (const MovingWall& wall : movers_) bytes += wall.memory_bytes();
   return bytes;

@@ -46,14 +46,12 @@ class BoundaryParticles {
   void mark_build(std::size_t fluid_clusters);
   void collect_triangles(std::size_t cluster, const Vec3& low, const Vec3& high, double margin);
 
-  struct Hold {
-    bool held = false;              ///< The path passed a wall: its end was put back.
-    bool squeezed_through = false;  ///< There was no room between walls: it passes a moving one.
-  };
-  /// Puts the end of a particle's path back where it would pass a wall, and takes its velocity towards the wall away.
+  /// Puts the end of a particle's path back where it would pass a wall or come into a gap that it does not fit into,
+  /// and takes its velocity in that direction away.
   /// @param nearest distance from the start to the nearest boundary particle (m)
   Hold hold(const Vec3& from, std::size_t cluster, double nearest, Vec3& target, Vec3& velocity) const {
-    if (nearest >= coverage_radius * sample_spacing_ + (target - from).norm() + last_shift_) return {};
+    const bool far = nearest >= coverage_radius * sample_spacing_ + (target - from).norm() + last_shift_;
+    if (far && near_gap_[cluster] == 0) return {};
     return hold_near(from, cluster, target, velocity);
   }
 
@@ -63,6 +61,7 @@ class BoundaryParticles {
   void append_samples(const std::vector<Vec3>& samples, const Boundary& boundary);
   void scale_adhesions(const SolverSettings& settings, const WallKernel& wall);
   Hold hold_near(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
+  bool keep_out(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
   Hold hold_between(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
 
   double sample_spacing_ = 0, support_ = 0;  // m, of the walls' kernel
@@ -78,6 +77,7 @@ class BoundaryParticles {
   WallGuard guard_;                                    // of the resting walls
   std::vector<std::vector<std::uint32_t>> triangles_;  // of the resting walls: one list a cluster
   std::vector<MovingWall> movers_;
+  std::vector<std::uint8_t> near_gap_;  // of some wall; one entry a cluster
   double greatest_speed_ = 0, last_shift_ = 0, build_time_ = 0, time_ = 0;
 };
 

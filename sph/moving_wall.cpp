@@ -13,7 +13,7 @@ Vec3 corner(const Vec3& low, const Vec3& high, int k) {
 }  // namespace
 
 MovingWall::MovingWall(const BoundaryMotion& motion, const Vec3& surface_velocity, const TriangleMesh& mesh,
-                       std::vector<Vec3> rest_positions, std::size_t first, double cell_size,
+                       std::vector<Vec3> rest_positions, std::size_t first, double sample_spacing, double spacing,
                        const PeriodicBox& periodic)
     : motion_(motion),
       rotates_(motion.rotates()),
@@ -21,7 +21,7 @@ MovingWall::MovingWall(const BoundaryMotion& motion, const Vec3& surface_velocit
       periodic_(periodic),
       rest_positions_(std::move(rest_positions)),
       first_(first),
-      guard_({mesh}, cell_size, rotates_ ? PeriodicBox() : periodic),
+      guard_({mesh}, 2 * spacing, rotates_ ? PeriodicBox() : periodic),
       rest_box_{Vec3::Constant(1e300), Vec3::Constant(-1e300)},
       before_(motion.pose(0)),
       now_(before_),
@@ -30,6 +30,7 @@ MovingWall::MovingWall(const BoundaryMotion& motion, const Vec3& surface_velocit
     rest_box_.min = rest_box_.min.cwiseMin(p);
     rest_box_.max = rest_box_.max.cwiseMax(p);
   }
+  guard_.find_gaps(rest_positions_, sample_spacing, spacing, rotates_ ? PeriodicBox() : periodic);
 }
 
 void MovingWall::move_to(double time) {
@@ -67,9 +68,10 @@ void MovingWall::mark_build(std::size_t clusters) {
   build_ = now_;
   triangles_.resize(clusters);
   for (auto& triangles : triangles_) triangles.clear();
+  near_gap_.assign(clusters, 0);
 }
 
-void MovingWall::collect_triangles(std::size_t cluster, const Vec3& low, const Vec3& high, double margin) {
+bool MovingWall::collect_triangles(std::size_t cluster, const Vec3& low, const Vec3& high, double margin) {
   const Vec3 shift = image_shift(0.5 * (low + high), now_);
   Vec3 rest_low = Vec3::Constant(1e300), rest_high = -rest_low;
   for (int k = 0; k < 8; ++k) {
@@ -77,24 +79,32 @@ void MovingWall::collect_triangles(std::size_t cluster, const Vec3& low, const V
     rest_low = rest_low.cwiseMin(p);
     rest_high = rest_high.cwiseMax(p);
   }
-  guard_.query(rest_low - Vec3::Constant(margin), rest_high + Vec3::Constant(margin), triangles_[cluster]);
+  near_gap_[cluster] = guard_.collect(rest_low, rest_high, margin, triangles_[cluster]);
+  return near_gap_[cluster] != 0;
 }
 
-bool MovingWall::hold(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const {
-  if (triangles_[cluster].empty()) return false;
+Hold MovingWall::hold(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const {
+  if (triangles_[cluster].empty()) return {};
+  const bool near_gap = near_gap_[cluster] != 0;
   const Vec3 shift = image_shift(from, before_);
   const Vec3 start = before_.to_rest(from + shift);
-  const WallGuard::Crossing crossing = guard_.check(start, now_.to_rest(target + shift), triangles_[cluster]);
-  if (!crossing.crossed) return false;
-  target = now_.place(start) - shift;
+  Vec3 end = now_.to_rest(target + shift);
+  WallGuard::Crossing crossing = guard_.check(start, end, triangles_[cluster], near_gap);
+  Hold result{.held = crossing.crossed};
+  if (crossing.crossed) end = start;
+  if (!crossing.crossed && near_gap) {
+    result.kept_out = guard_.keep_out(start, triangles_[cluster], end, crossing.normal);
+  }
+  if (!result.any()) return result;
+  target = now_.place(end) - shift;
   const Vec3 normal = now_.rotation * crossing.normal;
   velocity -= std::min(0.0, (velocity - now_.velocity_at(target + shift)).dot(normal)) * normal;
-  return true;
+  return result;
 }
 
 std::size_t MovingWall::memory_bytes() const {
   std::size_t bytes = rest_positions_.capacity() * sizeof(Vec3) + guard_.memory_bytes() +
-                      triangles_.capacity() * sizeof(decltype(triangles_)::value_type);
+                      triangles_.capacity() * sizeof(decltype(triangles_)::value_type) + near_gap_.capacity();
   for (const auto& triangles : triangles_) bytes += triangles.capacity() * sizeof(std::uint32_t);
   return bytes;
 }

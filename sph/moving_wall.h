@@ -18,8 +18,11 @@ class MovingWall {
  public:
   /// @param rest_positions its boundary particles (m), without motion
   /// @param first index of the first of them among all boundary particles
+  /// @param sample_spacing distance of the boundary particles (m)
+  /// @param spacing of the fluid (m)
   MovingWall(const BoundaryMotion& motion, const Vec3& surface_velocity, const TriangleMesh& mesh,
-             std::vector<Vec3> rest_positions, std::size_t first, double cell_size, const PeriodicBox& periodic);
+             std::vector<Vec3> rest_positions, std::size_t first, double sample_spacing, double spacing,
+             const PeriodicBox& periodic);
 
   /// From where it is to where it is at `time`.
   void move_to(double time);
@@ -36,11 +39,12 @@ class MovingWall {
 
   /// Prepares hold() for clusters of particles, by their boxes (m) and the way that they may go.
   void mark_build(std::size_t clusters);
-  void collect_triangles(std::size_t cluster, const Vec3& low, const Vec3& high, double margin);
+  /// Says whether a gap of this wall is near.
+  bool collect_triangles(std::size_t cluster, const Vec3& low, const Vec3& high, double margin);
 
   /// Where a particle's path in the last move passes this wall: puts its end back to the side where it began, carried
-  /// along with the wall, and takes the velocity towards the wall away. Says whether it did.
-  bool hold(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
+  /// along with the wall, and takes the velocity towards the wall away. Keeps it out of the wall's narrow gaps, too.
+  Hold hold(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
 
   std::size_t memory_bytes() const;
 
@@ -59,6 +63,7 @@ class MovingWall {
   Box rest_box_;
   Pose before_, now_, build_;
   std::vector<std::vector<std::uint32_t>> triangles_;  // one list a cluster
+  std::vector<std::uint8_t> near_gap_;                 // one entry a cluster
 };
 
 }  // namespace flowskin::sph

@@ -21,6 +21,15 @@ class PointGrid {
 
   /// Whether a point lies nearer to p than `distance` (<= cell_size).
   bool has_near(const Vec3& p, double distance) const {
+    bool found = false;
+    for_each_near(p, distance, [&](const Vec3&) { return found = true; });
+    return found;
+  }
+
+  /// Calls visit(point) for the points nearer to p than `distance` (<= cell_size), perhaps more than once, until it
+  /// says true.
+  template <typename Visit>
+  void for_each_near(const Vec3& p, double distance, Visit visit) const {
     const Cell low = cell(p - Vec3::Constant(distance)), high = cell(p + Vec3::Constant(distance));
     for (std::int64_t x = low.x; x <= high.x; ++x) {
       for (std::int64_t y = low.y; y <= high.y; ++y) {
@@ -28,12 +37,11 @@ class PointGrid {
           const auto found = cells_.find(key({x, y, z}));
           if (found == cells_.end()) continue;
           for (const Vec3& other : found->second) {
-            if ((other - p).squaredNorm() < distance * distance) return true;
+            if ((other - p).squaredNorm() < distance * distance && visit(other)) return;
           }
         }
       }
     }
-    return false;
   }
 
  private:

@@ -192,6 +192,7 @@ struct SolverStatistics {
   std::uint64_t list_rebuilds = 0;
   std::uint64_t left_domain = 0;       ///< Particles removed because they left the domain.
   std::uint64_t wall_crossings = 0;    ///< Particle paths that would have passed a wall and were put back.
+  std::uint64_t kept_out_of_gaps = 0;  ///< Particle paths that led into gaps narrower than the spacing.
   std::uint64_t squeezed_through = 0;  ///< Particles that moving walls left no room: they passed one.
   std::uint64_t emitted = 0;
   std::uint64_t not_emitted = 0;  ///< Particles that emitters left out because their places were taken.
@@ -207,7 +208,7 @@ struct SolverStatistics {
   void visit(Archive& archive) {
     archive(steps, list_rebuilds, left_domain, wall_crossings, squeezed_through, emitted, not_emitted, drained);
     archive(steps_limited_by_acoustic, steps_limited_by_viscous, steps_limited_by_force, steps_limited_by_capillary);
-    archive(last_step, viscosity_iterations, viscosity_tolerance);
+    archive(kept_out_of_gaps, last_step, viscosity_iterations, viscosity_tolerance);
     archive(seconds_neighbors, seconds_forces, seconds_viscosity, seconds_integration);
   }
 };

@@ -195,7 +195,7 @@ void SolverImpl::fill_pack(std::size_t i, double dt) {
                          v.y(), v.z(), compression, coefficients_.pack_pressure(compression)};
 }
 
-BoundaryParticles::Hold SolverImpl::drift_particle(std::size_t i, std::size_t cluster, double dt) {
+Hold SolverImpl::drift_particle(std::size_t i, std::size_t cluster, double dt) {
   const ParticleRates& rate = particles_.rates[i];
   Vec3& velocity = particles_.velocities[i];
   if (!is_implicit()) velocity += 0.5 * dt * (Vec3(rate.ax, rate.ay, rate.az) + settings_.gravity);
@@ -229,20 +229,22 @@ void SolverImpl::kick_implicitly(double dt) {
 
 void SolverImpl::kick_and_drift(double dt) {
   const Stopwatch watch(statistics_.seconds_integration);
-  std::uint64_t crossings = 0, squeezed = 0;
+  std::uint64_t crossings = 0, kept_out = 0, squeezed = 0;
   bool outside = false;
-#pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size())) reduction(+ : crossings, squeezed) reduction(|| : outside)
+#pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size())) reduction(+ : crossings, kept_out, squeezed) reduction(|| : outside)
   for (std::size_t c = 0; c < clusters_.size(); ++c) {
     const PointCluster& cluster = clusters_[c];
     for (std::size_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
-      const BoundaryParticles::Hold hold = drift_particle(i, c, dt);
+      const Hold hold = drift_particle(i, c, dt);
       crossings += hold.held;
+      kept_out += hold.kept_out;
       squeezed += hold.squeezed_through;
       fill_pack(i, dt);
       outside = outside || outside_domain(particles_.positions[i]);
     }
   }
   statistics_.wall_crossings += crossings;
+  statistics_.kept_out_of_gaps += kept_out;
   statistics_.squeezed_through += squeezed;
   some_outside_ = outside;
 }

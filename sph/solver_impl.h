@@ -59,7 +59,7 @@ class SolverImpl {
   /// of.
   void kick_and_drift(double dt);
   bool is_implicit() const { return settings_.viscosity_solver == ViscositySolver::implicit; }
-  BoundaryParticles::Hold drift_particle(std::size_t i, std::size_t cluster, double dt);
+  Hold drift_particle(std::size_t i, std::size_t cluster, double dt);
   void fill_pack(std::size_t i, double dt);
   void add_particle(const Vec3& position, const Vec3& velocity, const Vec3& rest_position, std::size_t fluid);
   void pour_emitters();

@@ -2,20 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "sph/triangle_geometry.h"
+
 namespace flowskin::sph {
-
-namespace {
-
-std::array<std::int64_t, 3> cell_of(const Vec3& p, const Vec3& origin, double cell_size) {
-  const Vec3 q = (p - origin) / cell_size;
-  return {static_cast<std::int64_t>(std::floor(q.x())), static_cast<std::int64_t>(std::floor(q.y())),
-          static_cast<std::int64_t>(std::floor(q.z()))};
-}
-
-}  // namespace
 
 WallGuard::WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, const PeriodicBox& periodic)
     : cell_size_(cell_size) {
@@ -39,8 +30,8 @@ WallGuard::WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, 
   // A triangle is entered in every cell of its box that its plane comes near.
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     const Triangle& tri = triangles_[t];
-    const auto first = cell_of(tri.a.cwiseMin(tri.b).cwiseMin(tri.c), origin_, cell_size_);
-    const auto last = cell_of(tri.a.cwiseMax(tri.b).cwiseMax(tri.c), origin_, cell_size_);
+    const auto first = cell_of(tri.a.cwiseMin(tri.b).cwiseMin(tri.c));
+    const auto last = cell_of(tri.a.cwiseMax(tri.b).cwiseMax(tri.c));
     for (auto x = first[0]; x <= last[0]; ++x) {
       for (auto y = first[1]; y <= last[1]; ++y) {
         for (auto z = first[2]; z <= last[2]; ++z) {
@@ -55,6 +46,17 @@ WallGuard::WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, 
   });
 }
 
+std::array<std::int64_t, 3> WallGuard::cell_of(const Vec3& p) const {
+  const Vec3 q = (p - origin_) / cell_size_;
+  return {static_cast<std::int64_t>(std::floor(q.x())), static_cast<std::int64_t>(std::floor(q.y())),
+          static_cast<std::int64_t>(std::floor(q.z()))};
+}
+
+std::uint64_t WallGuard::cell_at(const Vec3& p) const {
+  const auto [x, y, z] = cell_of(p);
+  return cell_key(x, y, z);
+}
+
 std::uint64_t WallGuard::cell_key(std::int64_t x, std::int64_t y, std::int64_t z) const {
   constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
   return (static_cast<std::uint64_t>(x) & mask) << 42 | (static_cast<std::uint64_t>(y) & mask) << 21 |
@@ -64,24 +66,19 @@ std::uint64_t WallGuard::cell_key(std::int64_t x, std::int64_t y, std::int64_t z
 void WallGuard::query(const Vec3& box_min, const Vec3& box_max, std::vector<std::uint32_t>& found) const {
   found.clear();
   if (triangles_.empty()) return;
-  const auto first = cell_of(box_min, origin_, cell_size_), last = cell_of(box_max, origin_, cell_size_);
-  for (auto x = first[0]; x <= last[0]; ++x) {
-    for (auto y = first[1]; y <= last[1]; ++y) {
-      for (auto z = first[2]; z <= last[2]; ++z) {
-        const std::uint64_t key = cell_key(x, y, z);
-        auto entry = std::lower_bound(entries_.begin(), entries_.end(), key,
-                                      [](const CellEntry& e, std::uint64_t k) { return e.cell < k; });
-        for (; entry != entries_.end() && entry->cell == key; ++entry) found.push_back(entry->triangle);
-      }
-    }
-  }
+  for_each_cell(box_min, box_max, [&](std::uint64_t key) {
+    auto entry = std::lower_bound(entries_.begin(), entries_.end(), key,
+                                  [](const CellEntry& e, std::uint64_t k) { return e.cell < k; });
+    for (; entry != entries_.end() && entry->cell == key; ++entry) found.push_back(entry->triangle);
+  });
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
-WallGuard::Crossing WallGuard::check(const Vec3& from, const Vec3& to,
-                                     const std::vector<std::uint32_t>& candidates) const {
-  const double hair = 1e-6 * cell_size_;
+WallGuard::Crossing WallGuard::check(const Vec3& from, const Vec3& to, const std::vector<std::uint32_t>& candidates,
+                                     bool with_rim) const {
+  constexpr double rim_share = 0.05;  // of a gap's width
+  const double hair = this->hair(), rim = with_rim ? rim_share * gap_width_ : hair;
   Crossing first;
   double first_share = 2;
   for (const std::uint32_t t : candidates) {
@@ -97,7 +94,9 @@ WallGuard::Crossing WallGuard::check(const Vec3& from, const Vec3& to,
     const double wa = tri.normal.dot((tri.b - p).cross(tri.c - p)), wb = tri.normal.dot((tri.c - p).cross(tri.a - p));
     const double rim_a = hair * (tri.c - tri.b).norm(), rim_b = hair * (tri.a - tri.c).norm(),
                  rim_c = hair * (tri.b - tri.a).norm();
-    if (wa < -rim_a || wb < -rim_b || area - wa - wb < -rim_c) continue;
+    if (wa < -rim_a || wb < -rim_b || area - wa - wb < -rim_c) {
+      if (!with_rim || (closest_on_triangle(p, tri.a, tri.b, tri.c, tri.normal) - p).norm() > rim) continue;
+    }
     if (share < first_share) {
       first_share = share;
       first = {true, from_height > 0 ? tri.normal : Vec3(-tri.normal)};
@@ -107,7 +106,8 @@ WallGuard::Crossing WallGuard::check(const Vec3& from, const Vec3& to,
 }
 
 std::size_t WallGuard::memory_bytes() const {
-  return triangles_.capacity() * sizeof(Triangle) + entries_.capacity() * sizeof(CellEntry);
+  return triangles_.capacity() * sizeof(Triangle) + entries_.capacity() * sizeof(CellEntry) +
+         gap_cells_.capacity() * sizeof(std::uint64_t);
 }
 
 }  // namespace flowskin::sph
