@@ -90,7 +90,9 @@ class TrackerImpl {
     } else {
       advect(particles);
       Projection projection = fair_and_project();
+      near_.reset();
       follow_topology(projection);
+      report_.max_distance = projection.max_distance;
       if (settings_.max_slip > 0 && !particles_.rest_positions.empty()) {
         Stopwatch watch(report_.seconds_topology);
         report_.held_back = limit_slip(settings_.max_slip, *field_, particles_, mesh_);
@@ -169,11 +171,12 @@ class TrackerImpl {
   Projection adopt(const SurfaceGeometry& raw) {
     const SurfaceGeometry geometry = improve_surface(*field_, settings_.edge_length, raw);
     std::vector<Vec3> positions = geometry.positions;
-    const Projection projection = project_to_surface(*field_, default_projection(settings_.field), positions);
+    Projection projection = project_to_surface(*field_, default_projection(settings_.field), positions);
     mesh_ = carry_material(mesh_, geometry, projection.normals, *field_, particles_, material_settings());
     topology_ = build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
     rest_lengths_ = edge_lengths(topology_, mesh_.positions);
     velocities_known_ = false;
+    report_.max_distance = projection.max_distance = largest_distance(*field_, mesh_.positions);
     return projection;
   }
 
@@ -224,10 +227,13 @@ class TrackerImpl {
         field_.emplace(field_at(next));
       }
       Stopwatch watch(report_.seconds_projection);
-      project_to_surface(*field_, default_projection(settings_.field), mesh_.positions);
+      near_.emplace(*field_, mesh_.positions, usual_slack(settings_.field));
+      project_to_surface(*near_, default_projection(settings_.field), mesh_.positions);
     }
     particles_ = particles;
-    if (report_.substeps == 0 || duration == 0) rebuild_field();
+    if (duration != 0) return;
+    rebuild_field();
+    near_.emplace(*field_, mesh_.positions, usual_slack(settings_.field));
   }
 
   Projection fair_and_project() {
@@ -235,7 +241,7 @@ class TrackerImpl {
       Stopwatch watch(report_.seconds_fairing);
       std::vector<Confidence> confidence;
       if (settings_.variable_springs) confidence = field_confidence(*field_, mesh_.positions);
-      fair(*field_, topology_, rest_lengths_, {settings_.fairing_iterations, settings_.fairing_stiffness}, confidence,
+      fair(*near_, topology_, rest_lengths_, {settings_.fairing_iterations, settings_.fairing_stiffness}, confidence,
            mesh_.positions);
       if (settings_.remeshing) remesh_surface();
     }
@@ -312,7 +318,6 @@ class TrackerImpl {
     report_.components = components.count;
     report_.volume = mesh_volume(mesh_.positions, mesh_.triangles);
     report_.area = mesh_area(mesh_.positions, mesh_.triangles);
-    report_.max_distance = field_ ? largest_distance(*field_, mesh_.positions) : 0;
   }
 
   TrackerSettings settings_;
@@ -327,7 +332,8 @@ class TrackerImpl {
   // What follows from the state.
   std::optional<MetaballField> field_;  // of the particles; none where there are none
   MeshTopology topology_;
-  bool field_of_particles_ = true;  // false during a step: the field is that of paths that jump or are blended
+  std::optional<Neighborhoods> near_;  // during a step: of places near the vertices before fairing
+  bool field_of_particles_ = true;     // false during a step: the field is that of paths that jump or are blended
 };
 
 Tracker::Tracker(TrackerSettings settings, const Particles& particles)

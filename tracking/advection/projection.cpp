@@ -61,6 +61,25 @@ bool project(const Field& field, const ProjectionSettings& settings, Vec3& x, Su
   return false;
 }
 
+// Projects the vertices `moved`, whose neighbourhoods these are in this order.
+void project_some(const Neighborhoods& neighborhoods, const ProjectionSettings& settings, const std::vector<int>& moved,
+                  std::vector<Vec3>& positions, Projection& projection) {
+  std::vector<char> reached(moved.size());
+  neighborhoods.for_each([&](int i, const LocalField& local) {
+    const int v = moved[i];
+    SurfaceDistance point;
+    reached[i] = project(local, settings, positions[v], point);
+    projection.normals[v] = point.normal;
+    projection.distances[v] = point.distance;
+  });
+  projection.failed.clear();
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (!reached[i]) projection.failed.push_back(moved[i]);
+  }
+  const auto largest = std::max_element(projection.distances.begin(), projection.distances.end());
+  projection.max_distance = largest != projection.distances.end() ? *largest : 0;
+}
+
 }  // namespace
 
 ProjectionSettings default_projection(const FieldSettings& field) {
@@ -94,12 +113,17 @@ double usual_slack(const FieldSettings& field) { return kUsualSlack * field.radi
 
 Projection project_to_surface(const MetaballField& field, const ProjectionSettings& settings,
                               std::vector<Vec3>& positions) {
+  return project_to_surface(Neighborhoods(field, positions, usual_slack(field.settings())), settings, positions);
+}
+
+Projection project_to_surface(const Neighborhoods& neighborhoods, const ProjectionSettings& settings,
+                              std::vector<Vec3>& positions) {
   Projection result;
   result.normals.resize(positions.size());
   result.distances.resize(positions.size());
   std::vector<int> all(positions.size());
   std::iota(all.begin(), all.end(), 0);
-  project_moved(field, settings, all, positions, result);
+  project_some(neighborhoods, settings, all, positions, result);
   return result;
 }
 
@@ -107,20 +131,7 @@ void project_moved(const MetaballField& field, const ProjectionSettings& setting
                    std::vector<Vec3>& positions, Projection& projection) {
   std::vector<Vec3> starts(moved.size());
   for (std::size_t i = 0; i < moved.size(); ++i) starts[i] = positions[moved[i]];
-  std::vector<char> reached(moved.size());
-  Neighborhoods(field, starts, usual_slack(field.settings())).for_each([&](int i, const LocalField& local) {
-    const int v = moved[i];
-    SurfaceDistance point;
-    reached[i] = project(local, settings, positions[v], point);
-    projection.normals[v] = point.normal;
-    projection.distances[v] = point.distance;
-  });
-  projection.failed.clear();
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    if (!reached[i]) projection.failed.push_back(moved[i]);
-  }
-  const auto largest = std::max_element(projection.distances.begin(), projection.distances.end());
-  projection.max_distance = largest != projection.distances.end() ? *largest : 0;
+  project_some(Neighborhoods(field, starts, usual_slack(field.settings())), settings, moved, positions, projection);
 }
 
 }  // namespace flowskin::tracking

@@ -50,6 +50,9 @@ struct Projection {
 /// project_point for every vertex.
 Projection project_to_surface(const MetaballField& field, const ProjectionSettings& settings,
                               std::vector<Vec3>& positions);
+/// The same with the neighbourhoods of the positions, or of places near them; best with the usual slack.
+Projection project_to_surface(const Neighborhoods& neighborhoods, const ProjectionSettings& settings,
+                              std::vector<Vec3>& positions);
 
 /// Brings a projection up to date where only some vertices have moved since.
 /// @param moved the numbers of all vertices that have moved or failed

@@ -105,8 +105,13 @@ Vec3 fairing_move(const SpringMesh& mesh, int vertex, const Vec3& normal, const 
 
 void fair(const MetaballField& field, const MeshTopology& topology, const std::vector<double>& rest_lengths,
           const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions) {
-  const double longest_step = default_projection(field.settings()).max_step;
-  const Neighborhoods neighborhoods(field, positions, usual_slack(field.settings()));
+  fair(Neighborhoods(field, positions, usual_slack(field.settings())), topology, rest_lengths, settings, confidence,
+       positions);
+}
+
+void fair(const Neighborhoods& neighborhoods, const MeshTopology& topology, const std::vector<double>& rest_lengths,
+          const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions) {
+  const double longest_step = default_projection(neighborhoods.field().settings()).max_step;
   const SpringsInOrder springs(topology, rest_lengths, neighborhoods);
   const SpringMesh mesh{springs.topology, springs.rest_lengths, confidence.empty() ? Laying::projected : Laying::turned,
                         settings.stiffness};

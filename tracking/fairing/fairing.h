@@ -27,6 +27,9 @@ struct FairingSettings {
 /// @param positions on the surface, or near it.
 void fair(const MetaballField& field, const MeshTopology& topology, const std::vector<double>& rest_lengths,
           const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions);
+/// The same with the neighbourhoods of the positions, or of places near them; best with the usual slack.
+void fair(const Neighborhoods& neighborhoods, const MeshTopology& topology, const std::vector<double>& rest_lengths,
+          const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions);
 
 /// How neighbours come into the tangent plane of a vertex: projected, or turned at their distance.
 enum class Laying { projected, turned };

@@ -63,7 +63,8 @@ void LocalField::neighbors(const Vec3& x, std::vector<int>& found) const {
 }
 
 Neighborhoods::Neighborhoods(const MetaballField& field, const std::vector<Vec3>& points, double slack)
-    : order_(order_of(points, cell_in_radii * field.settings().radius)),
+    : field_(&field),
+      order_(order_of(points, cell_in_radii * field.settings().radius)),
       places_(points.size()),
       chunks_((points.size() + chunk_size - 1) / chunk_size) {
   const auto count = static_cast<int>(order_.size());

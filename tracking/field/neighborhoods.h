@@ -50,6 +50,7 @@ class Neighborhoods {
   Neighborhoods(const Neighborhoods&) = delete;
   Neighborhoods& operator=(const Neighborhoods&) = delete;
 
+  const MetaballField& field() const { return *field_; }
   const LocalField& at(int point) const { return locals_[places_[point]]; }
   /// The points along the curve, in the order of for_each.
   const std::vector<int>& order() const { return order_; }
@@ -72,6 +73,7 @@ class Neighborhoods {
   void fill(const MetaballField& field, const std::vector<Vec3>& points, double reach, int begin, int end,
             Chunk& chunk) const;
 
+  const MetaballField* field_;
   std::vector<int> order_;          // points along the curve; those that are not finite come last
   std::vector<int> places_;         // of each point in the order
   std::vector<Chunk> chunks_;       // of so many points each, in this order
