@@ -9,7 +9,7 @@ namespace flowskin::sph {
 
 namespace {
 
-// Volume V_b over the area of a boundary particle in a plane: 1 / (area sum W) over the square lattice.
+// Volume V_b over the area of a boundary particle in a plane: factor / (area sum W) over the square lattice.
 double area_to_volume(const SolverSettings& settings, const WallKernel& wall) {
   const int reach = static_cast<int>(std::ceil(wall.support / wall.sample_spacing));
   double sum = 0;
@@ -18,7 +18,7 @@ double area_to_volume(const SolverSettings& settings, const WallKernel& wall) {
       sum += kernel_value(settings.kernel, wall.sample_spacing * std::hypot(i, j), wall.support);
     }
   }
-  return 1 / (wall.sample_spacing * wall.sample_spacing * sum);
+  return wall.volume_factor / (wall.sample_spacing * wall.sample_spacing * sum);
 }
 
 // Puts values[first], values[first + 1], ... into the order given.
@@ -48,8 +48,9 @@ BoundaryParticles::BoundaryParticles(const std::vector<Boundary>& boundaries, co
     : sample_spacing_(wall.sample_spacing), support_(wall.support), periodic_(periodic) {
   const auto append_volumes = [&](std::size_t first) {
     const std::vector<Vec3> group(positions_.begin() + static_cast<std::ptrdiff_t>(first), positions_.end());
-    const std::vector<double> volumes = boundary_volumes(group, settings.kernel, support_, periodic);
-    volumes_.insert(volumes_.end(), volumes.begin(), volumes.end());
+    for (const double volume : boundary_volumes(group, settings.kernel, support_, periodic)) {
+      volumes_.push_back(wall.volume_factor * volume);
+    }
   };
   std::vector<TriangleMesh> resting;
   for (const Boundary& boundary : boundaries) {

@@ -25,7 +25,10 @@ PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wa
   inverse_support = static_cast<float>(1 / support);
   kernel_scale = static_cast<float>(volume / (support * support * support));
   kernel_gradient = static_cast<float>(gradient);
-  pressure_scale = static_cast<float>(gradient * c * c);
+  pressure_scale = static_cast<float>(gradient * c * c * lattice_pressure_factor(s));
+  background = static_cast<float>(s.background_pressure / (s.rest_density * c * c));
+  // Without a free surface nothing is missing where the density is low.
+  least_compression = s.background_pressure > 0 ? -0.99F : 0.0F;
   diffusion = static_cast<float>(2 * s.density_diffusion * h * c * gradient);
   viscosity = static_cast<float>(viscous * lattice_viscosity_factor(s) * cell * gradient_scale(support));
   softening = static_cast<float>(0.01 * h * h);
@@ -35,6 +38,7 @@ PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wa
   wall_inverse_support = static_cast<float>(1 / wall.support);
   wall_gradient = static_cast<float>(wall_scale);
   wall_pressure = static_cast<float>(wall_scale / gradient);
+  wall_barrier_from = static_cast<float>(2 * wall.compression);
   wall_viscosity = static_cast<float>(viscous * wall.friction_factor * wall_scale);
   wall_softening = static_cast<float>(0.01 * wall.support * wall.support / 4);
   for (int a = 0; a < 3; ++a) {
@@ -46,7 +50,9 @@ PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wa
 
 float PairCoefficients::pack_pressure(float compression) const {
   const float density_ratio = 1 + compression;
-  return pressure_scale * clamped_pressure(compression) / (density_ratio * density_ratio);
+  const float pressure =
+      least_compression < 0 ? pressure_with_background(compression, background) : clamped_pressure(compression);
+  return pressure_scale * pressure / (density_ratio * density_ratio);
 }
 
 namespace {
@@ -75,8 +81,15 @@ struct Sums {
   Float8 diffusion{};
   Float8 sx{}, sy{}, sz{};  // XSPH
   Float8 wall_distance2 = broadcast(1e18F);
-  Float8 fx{}, fy{}, fz{};  // friction on walls ...
-  Float8 friction_rate{};   // ... and the rate (1/s) at which it would stop the particle
+  Float8 wx{}, wy{}, wz{}, wall_sum{};  // push of walls, and what they add to the density
+  Float8 fx{}, fy{}, fz{};              // friction on walls ...
+  Float8 friction_rate{};               // ... and the rate (1/s) at which it would stop the particle
+
+  void add_push(const Float8& pressure) {
+    ax += pressure * wx;
+    ay += pressure * wy;
+    az += pressure * wz;
+  }
 
   // The friction of a wall grows without limit as a particle comes close to it. Within one step it may stop the
   // particle, but not throw it back: where it would, it is made smaller.
@@ -88,10 +101,14 @@ struct Sums {
   }
 };
 
+// Where walls add more to the density than fluid feels that rests in an edge, they add this much of the square of the
+// rest too. The sum alone would hold a single drop only up to one and a half times max_speed.
+constexpr float wall_barrier = 2;
+
 // Constants in all lanes.
 struct SplatCoefficients {
   Float8 inverse_support, gx, gy, gz;
-  Float8 wall_inverse_support, wall_pressure;
+  Float8 wall_inverse_support, wall_pressure, wall_barrier_from;
   ViscousPairs viscous;
   MinimumImage image;
 
@@ -102,8 +119,11 @@ struct SplatCoefficients {
         gz(broadcast(c.compression_gradient[2])),
         wall_inverse_support(broadcast(c.wall_inverse_support)),
         wall_pressure(broadcast(c.wall_pressure)),
+        wall_barrier_from(broadcast(c.wall_barrier_from)),
         viscous(c),
         image(c) {}
+
+  Float8 wall_excess(const Float8& wall_sum) const { return max(Float8{}, wall_sum - wall_barrier_from); }
 };
 
 // Density difference that diffuses. Fluid at rest has a density gradient that must stay: the part of the difference
@@ -168,14 +188,14 @@ inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPac
   const auto [dx, dy, dz] = c.image.difference<periodic>(i.x, i.y, i.z, b);
   const Float8 r2 = dx * dx + dy * dy + dz * dz;
   sums.wall_distance2 = min(sums.wall_distance2, r2);
-  const Float8 s = broadcast(b.volume) * Kernel::shape(sqrt(r2) * c.wall_inverse_support);
+  const Float8 q = sqrt(r2) * c.wall_inverse_support, s = broadcast(b.volume) * Kernel::shape(q);
   const Float8 ux = i.vx - broadcast(b.vx), uy = i.vy - broadcast(b.vy), uz = i.vz - broadcast(b.vz);
   const Float8 approach = ux * dx + uy * dy + uz * dz;
   sums.wall_divergence += s * approach;
-  const Float8 pressure = s * i.pressure * c.wall_pressure;
-  sums.ax += pressure * dx;
-  sums.ay += pressure * dy;
-  sums.az += pressure * dz;
+  sums.wx += s * dx;
+  sums.wy += s * dy;
+  sums.wz += s * dz;
+  sums.wall_sum += broadcast(b.volume) * Kernel::scaled_value(q);
   if constexpr (!Viscosity::viscous) return;
   const Float8 friction = c.viscous.wall<Viscosity::variable>(s * broadcast(b.stick), r2, own_viscosity);
   sums.friction_rate += friction * r2;
@@ -215,6 +235,9 @@ void run_forces(const PairCoefficients& coefficients, const PairData& data) {
     for (const std::uint32_t b : data.wall_lists->of_cluster(cluster)) {
       add_wall<Kernel, Viscosity, periodic>(c, targets, data.walls[b], viscosity, sums);
     }
+    // The gradient of what walls add to the density, so that energy is kept.
+    const Float8 barrier = continuity ? Float8{} : broadcast(2 * wall_barrier) * c.wall_excess(sums.wall_sum);
+    sums.add_push(targets.pressure * c.wall_pressure * (broadcast(1.0F) + barrier));
     if constexpr (Viscosity::viscous) sums.add_friction(data.time_step);
     for (std::uint32_t k = 0; k < count; ++k) {
       // Continuity: d(rho / rho_0)/dt = V sum v_ij . grad W [Monaghan 1992, Eq. 2.17], plus the diffusion.
@@ -250,9 +273,11 @@ void run_densities(const PairCoefficients& coefficients, const PairData& data) {
     for (const std::uint32_t b : data.wall_lists->of_cluster(cluster)) {
       wall_sum += broadcast(data.walls[b].volume) * kernel(data.walls[b], c.wall_inverse_support);
     }
+    const Float8 excess = c.wall_excess(wall_sum);
+    wall_sum += broadcast(wall_barrier) * excess * excess;
     for (std::uint32_t k = 0; k < count; ++k) {
       FluidPack& pack = data.fluid[first + k];
-      pack.compression = std::max(0.0F, coefficients.kernel_scale * sum[k] + wall_sum[k] - 1);
+      pack.compression = std::max(coefficients.least_compression, coefficients.kernel_scale * sum[k] + wall_sum[k] - 1);
       pack.pressure = coefficients.pack_pressure(pack.compression);
     }
   }

@@ -24,6 +24,8 @@ struct PairCoefficients {
   float kernel_scale = 0;              ///< V / R^3
   float kernel_gradient = 0;           ///< V G
   float pressure_scale = 0;            ///< V G c^2
+  float background = 0;                ///< Background pressure / (rho_0 c^2)
+  float least_compression = 0;         ///< Of the summed density: 0 where there are free surfaces.
   float diffusion = 0;                 ///< 2 delta h c V G
   float viscosity = 0;                 ///< 10 nu V G (Monaghan's form) or 2 nu V G (Morris's)
   float softening = 0;                 ///< 0.01 h^2, keeps the viscous force of coincident particles finite
@@ -34,6 +36,7 @@ struct PairCoefficients {
   float wall_pressure = 0;             ///< G_b R_b^3 / (V G)
   float wall_viscosity = 0;            ///< as viscosity, with G_b R_b^3 and the walls' friction factor
   float wall_softening = 0;
+  float wall_barrier_from = 0;                   ///< Compression by walls, twice that of fluid at rest on a plane
   float period[3] = {}, inverse_period[3] = {};  ///< m, 1/m; 0 along axes that are not periodic
 };
 

@@ -8,15 +8,24 @@
 namespace flowskin::tools {
 
 // Each is defined in the file of its name in tools/validation/cases/.
+ValidationCase hydrostatic_case();
 ValidationCase conservation_case();
+ValidationCase symmetry_case();
+ValidationCase poiseuille_case();
+ValidationCase film_case();
+ValidationCase rheology_case();
+ValidationCase taylor_green_case();
 ValidationCase oscillating_drop_case();
 ValidationCase square_drop_case();
-ValidationCase rheology_case();
 ValidationCase bingham_slump_case();
+ValidationCase gravity_current_case();
+ValidationCase dam_break_case();
 
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases{
-      conservation_case(), oscillating_drop_case(), square_drop_case(), rheology_case(), bingham_slump_case(),
+      hydrostatic_case(), conservation_case(),  symmetry_case(),        poiseuille_case(),
+      film_case(),        rheology_case(),      taylor_green_case(),    oscillating_drop_case(),
+      square_drop_case(), bingham_slump_case(), gravity_current_case(), dam_break_case(),
   };
   return cases;
 }
