@@ -41,6 +41,13 @@ std::vector<Vec3> in_curve_order(const std::vector<Vec3>& points, double spacing
   return sorted;
 }
 
+// How far the lists of pairs of fluid particles reach, at most.
+double list_reach(const SolverSettings& settings) {
+  constexpr double tension_reach = 3.0, widest_automatic_skin = 0.5;
+  const double support = std::max(settings.support_radius, settings.surface_tension > 0 ? tension_reach : 0.0);
+  return (support + std::max(settings.skin, widest_automatic_skin)) * settings.spacing;
+}
+
 }  // namespace
 
 BoundaryParticles::BoundaryParticles(const std::vector<Boundary>& boundaries, const SolverSettings& settings,
@@ -62,6 +69,7 @@ BoundaryParticles::BoundaryParticles(const std::vector<Boundary>& boundaries, co
   append_volumes(0);
   if (!resting.empty()) {
     guard_ = WallGuard(resting, 2 * settings.spacing, periodic);
+    thin_ = ThinWalls(resting, guard_, settings.spacing, list_reach(settings), periodic);
     guard_.find_gaps(positions_, sample_spacing_, settings.spacing, periodic);
   }
   for (const Boundary& boundary : boundaries) {
@@ -73,7 +81,7 @@ BoundaryParticles::BoundaryParticles(const std::vector<Boundary>& boundaries, co
     append_samples(samples, boundary);
     append_volumes(first);
     movers_.emplace_back(boundary.motion, boundary.surface_velocity, mesh, samples, first, sample_spacing_,
-                         settings.spacing, periodic);
+                         settings.spacing, list_reach(settings), periodic);
     greatest_speed_ = std::max(greatest_speed_, movers_.back().greatest_speed() + boundary.surface_velocity.norm());
   }
   scale_adhesions(settings, wall);
@@ -211,9 +219,37 @@ Hold BoundaryParticles::hold_between(const Vec3& from, std::size_t cluster, Vec3
   return result;
 }
 
+bool BoundaryParticles::has_thin() const {
+  return !thin_.empty() ||
+         std::any_of(movers_.begin(), movers_.end(), [](const MovingWall& wall) { return wall.is_thin(); });
+}
+
+bool BoundaryParticles::hide(const PointClusters& points, const PointView& places, std::size_t cluster,
+                             std::span<const std::uint32_t> sources, std::vector<std::uint8_t>& hidden) const {
+  const PointCluster& own = points[cluster];
+  const Vec3 center = origin_ + (0.5F * (own.box_min + own.box_max)).cast<double>();
+  const bool near_resting = thin_.near(center);
+  const auto near_mover = [&](const MovingWall& wall) { return wall.near_thin(center); };
+  if (!near_resting && std::none_of(movers_.begin(), movers_.end(), near_mover)) return false;
+  // In a periodic box the images nearest to the cluster.
+  const auto place = [&](std::size_t k) {
+    const Vec3 p = origin_ + places[k].cast<double>();
+    return periodic_.any() ? Vec3(center + periodic_.shortest(p - center)) : p;
+  };
+  std::vector<Vec3> from, to;
+  for (std::uint32_t lane = 0; lane < own.count; ++lane) from.push_back(place(own.first + lane));
+  for (const std::uint32_t k : sources) to.push_back(place(k));
+  if (near_resting) thin_.hide(from, to, hidden);
+  for (const MovingWall& wall : movers_) {
+    if (near_mover(wall)) wall.hide(from, to, hidden);
+  }
+  return true;
+}
+
 std::size_t BoundaryParticles::memory_bytes() const {
-  std::size_t bytes = positions_.capacity() * sizeof(Vec3) + packs_.capacity() * sizeof(WallPack) +
-                      adhesions_.capacity() * sizeof(float) + clusters_.memory_bytes() + guard_.memory_bytes() +
+  std::size_t bytes = thin_.memory_bytes() + positions_.capacity() * sizeof(Vec3) +
+                      packs_.capacity() * sizeof(WallPack) + adhesions_.capacity() * sizeof(float) +
+                      clusters_.memory_bytes() + guard_.memory_bytes() +
                       triangles_.capacity() * sizeof(decltype(triangles_)::value_type) + near_gap_.capacity();
   for (const auto& triangles : triangles_) bytes += triangles.capacity() * sizeof(std::uint32_t);
   for (const MovingWall& wall : movers_) bytes += wall.memory_bytes();

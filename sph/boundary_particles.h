@@ -9,6 +9,7 @@
 #include "sph/periodic_box.h"
 #include "sph/point_clusters.h"
 #include "sph/solver.h"
+#include "sph/thin_walls.h"
 #include "sph/wall_guard.h"
 #include "sph/wall_kernel.h"
 
@@ -55,6 +56,14 @@ class BoundaryParticles {
     return hold_near(from, cluster, target, velocity);
   }
 
+  /// Whether some wall is so thin that fluid on one side of it could feel fluid on the other.
+  bool has_thin() const;
+  /// Sets bit k of hidden[j] where such a wall is between point k of a cluster and point sources[j]; false where none
+  /// is near.
+  /// @param places of all points, relative to the origin
+  bool hide(const PointClusters& points, const PointView& places, std::size_t cluster,
+            std::span<const std::uint32_t> sources, std::vector<std::uint8_t>& hidden) const;
+
   std::size_t memory_bytes() const;
 
  private:
@@ -75,6 +84,7 @@ class BoundaryParticles {
   std::vector<WallPack> packs_;
   PointClusters clusters_;
   WallGuard guard_;                                    // of the resting walls
+  ThinWalls thin_;                                     // of the resting walls
   std::vector<std::vector<std::uint32_t>> triangles_;  // of the resting walls: one list a cluster
   std::vector<MovingWall> movers_;
   std::vector<std::uint8_t> near_gap_;  // of some wall; one entry a cluster

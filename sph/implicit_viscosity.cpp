@@ -20,6 +20,7 @@ struct ImplicitViscosity::Loops {
   ViscousPairs pairs;
   MinimumImage image;
   Float8 dt, inverse_support, wall_inverse_support;
+  Float8 away[3];
 
   Loops(ImplicitViscosity& solver, const PairCoefficients& c, const SolverSettings& s, const ViscousProblem& p)
       : own(solver),
@@ -30,7 +31,8 @@ struct ImplicitViscosity::Loops {
         image(c),
         dt(broadcast(static_cast<float>(p.time_step))),
         inverse_support(broadcast(c.inverse_support)),
-        wall_inverse_support(broadcast(c.wall_inverse_support)) {}
+        wall_inverse_support(broadcast(c.wall_inverse_support)),
+        away{broadcast(c.away[0]), broadcast(c.away[1]), broadcast(c.away[2])} {}
 
   template <typename Kernel, bool monaghan, bool variable, bool periodic, bool first>
   Lanes3 resistance(std::size_t cluster, Blocks* diagonal) const;
@@ -150,7 +152,8 @@ ImplicitViscosity::Lanes3 ImplicitViscosity::Loops::resistance(std::size_t clust
     const FluidPack& p = problem.fluid[begin + (k < count ? k : 0)];
     rows[0][k] = p.x, rows[1][k] = p.y, rows[2][k] = p.z, rows[3][k] = p.vx, rows[4][k] = p.vy, rows[5][k] = p.vz;
   }
-  const Float8 x = load8(rows[0].data()), y = load8(rows[1].data()), z = load8(rows[2].data());
+  const Float8 own_x = load8(rows[0].data()), own_y = load8(rows[1].data()), own_z = load8(rows[2].data());
+  Float8 x = own_x, y = own_y, z = own_z;
   const Float8 vx = load8(rows[3].data()), vy = load8(rows[4].data()), vz = load8(rows[5].data());
   const Float8 viscosity = variable ? load_viscosities(&problem.viscosities[begin], count) : Float8{};
   Lanes3 force;
@@ -170,14 +173,22 @@ ImplicitViscosity::Lanes3 ImplicitViscosity::Loops::resistance(std::size_t clust
       diagonal->xx += k * r2, diagonal->yy += k * r2, diagonal->zz += k * r2;
     }
   };
-  for (const std::uint32_t index : problem.fluid_lists->of_cluster(cluster)) {
-    const FluidPack& j = problem.fluid[index];
-    const auto [dx, dy, dz] = image.difference<periodic>(x, y, z, j);
-    const Float8 r2 = dx * dx + dy * dy + dz * dz;
-    const Float8 shape = Kernel::shape(sqrt(r2) * inverse_support);
-    const Float8 k = pairs.fluid<variable>(shape, r2, viscosity, variable ? problem.viscosities[index] : 0.0F);
-    add(k, dx, dy, dz, r2, vx - broadcast(j.vx), vy - broadcast(j.vy), vz - broadcast(j.vz));
+  for (std::size_t part = 0; part < problem.fluid_lists->part_count(cluster); ++part) {
+    const auto [sources, hidden] = problem.fluid_lists->part(cluster, part);
+    if (part > 0) {
+      const Float8 far = lanes_of(hidden);
+      x = own_x + far * away[0], y = own_y + far * away[1], z = own_z + far * away[2];
+    }
+    for (const std::uint32_t index : sources) {
+      const FluidPack& j = problem.fluid[index];
+      const auto [dx, dy, dz] = image.difference<periodic>(x, y, z, j);
+      const Float8 r2 = dx * dx + dy * dy + dz * dz;
+      const Float8 shape = Kernel::shape(sqrt(r2) * inverse_support);
+      const Float8 k = pairs.fluid<variable>(shape, r2, viscosity, variable ? problem.viscosities[index] : 0.0F);
+      add(k, dx, dy, dz, r2, vx - broadcast(j.vx), vy - broadcast(j.vy), vz - broadcast(j.vz));
+    }
   }
+  x = own_x, y = own_y, z = own_z;
   for (const std::uint32_t index : problem.wall_lists->of_cluster(cluster)) {
     const WallPack& b = problem.walls[index];
     const auto [dx, dy, dz] = image.difference<periodic>(x, y, z, b);

@@ -14,7 +14,7 @@ Vec3 corner(const Vec3& low, const Vec3& high, int k) {
 
 MovingWall::MovingWall(const BoundaryMotion& motion, const Vec3& surface_velocity, const TriangleMesh& mesh,
                        std::vector<Vec3> rest_positions, std::size_t first, double sample_spacing, double spacing,
-                       const PeriodicBox& periodic)
+                       double reach, const PeriodicBox& periodic)
     : motion_(motion),
       rotates_(motion.rotates()),
       surface_velocity_(surface_velocity),
@@ -30,6 +30,7 @@ MovingWall::MovingWall(const BoundaryMotion& motion, const Vec3& surface_velocit
     rest_box_.min = rest_box_.min.cwiseMin(p);
     rest_box_.max = rest_box_.max.cwiseMax(p);
   }
+  thin_ = ThinWalls({mesh}, guard_, spacing, reach, rotates_ ? PeriodicBox() : periodic);
   guard_.find_gaps(rest_positions_, sample_spacing, spacing, rotates_ ? PeriodicBox() : periodic);
 }
 
@@ -102,8 +103,22 @@ Hold MovingWall::hold(const Vec3& from, std::size_t cluster, Vec3& target, Vec3&
   return result;
 }
 
+bool MovingWall::near_thin(const Vec3& center) const {
+  return !thin_.empty() && thin_.near(now_.to_rest(center + image_shift(center, now_)));
+}
+
+void MovingWall::hide(std::span<const Vec3> targets, std::span<const Vec3> sources,
+                      std::vector<std::uint8_t>& hidden) const {
+  const Vec3 shift = image_shift(targets[0], now_);
+  std::vector<Vec3> at_rest;
+  for (const Vec3& p : targets) at_rest.push_back(now_.to_rest(p + shift));
+  for (const Vec3& p : sources) at_rest.push_back(now_.to_rest(p + shift));
+  const std::span<const Vec3> places = at_rest;
+  thin_.hide(places.first(targets.size()), places.subspan(targets.size()), hidden);
+}
+
 std::size_t MovingWall::memory_bytes() const {
-  std::size_t bytes = rest_positions_.capacity() * sizeof(Vec3) + guard_.memory_bytes() +
+  std::size_t bytes = thin_.memory_bytes() + rest_positions_.capacity() * sizeof(Vec3) + guard_.memory_bytes() +
                       triangles_.capacity() * sizeof(decltype(triangles_)::value_type) + near_gap_.capacity();
   for (const auto& triangles : triangles_) bytes += triangles.capacity() * sizeof(std::uint32_t);
   return bytes;

@@ -6,6 +6,7 @@
 
 #include "sph/boundary_motion.h"
 #include "sph/periodic_box.h"
+#include "sph/thin_walls.h"
 #include "sph/wall_guard.h"
 
 namespace flowskin::sph {
@@ -20,8 +21,9 @@ class MovingWall {
   /// @param first index of the first of them among all boundary particles
   /// @param sample_spacing distance of the boundary particles (m)
   /// @param spacing of the fluid (m)
+  /// @param reach of the fluid's lists (m)
   MovingWall(const BoundaryMotion& motion, const Vec3& surface_velocity, const TriangleMesh& mesh,
-             std::vector<Vec3> rest_positions, std::size_t first, double sample_spacing, double spacing,
+             std::vector<Vec3> rest_positions, std::size_t first, double sample_spacing, double spacing, double reach,
              const PeriodicBox& periodic);
 
   /// From where it is to where it is at `time`.
@@ -46,6 +48,11 @@ class MovingWall {
   /// along with the wall, and takes the velocity towards the wall away. Keeps it out of the wall's narrow gaps, too.
   Hold hold(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
 
+  /// As ThinWalls, with places where the wall is now.
+  bool is_thin() const { return !thin_.empty(); }
+  bool near_thin(const Vec3& center) const;
+  void hide(std::span<const Vec3> targets, std::span<const Vec3> sources, std::vector<std::uint8_t>& hidden) const;
+
   std::size_t memory_bytes() const;
 
  private:
@@ -60,6 +67,7 @@ class MovingWall {
   std::vector<Vec3> rest_positions_;
   std::size_t first_;
   WallGuard guard_;
+  ThinWalls thin_;
   Box rest_box_;
   Pose before_, now_, build_;
   std::vector<std::vector<std::uint32_t>> triangles_;  // one list a cluster

@@ -92,16 +92,48 @@ void query_images(const PointClusters& sources, const Eigen::Vector3f& low, cons
 }  // namespace
 
 void NeighborLists::build(const PointClusters& targets, const PointClusters& sources, float radius,
-                          const Eigen::Vector3f& period) {
-  period.isZero(0) ? build_blocks<false>(targets, sources, radius, period)
-                   : build_blocks<true>(targets, sources, radius, period);
+                          const Eigen::Vector3f& period, const Sight& sight) {
+  period.isZero(0) ? build_blocks<false>(targets, sources, radius, period, sight)
+                   : build_blocks<true>(targets, sources, radius, period, sight);
+}
+
+// The entries of a cluster, which are the last ones: first those that all lanes see, then those that some see, in
+// order of who does. Those that nobody sees are dropped.
+void NeighborLists::sort_by_sight(const PointClusters& targets, std::size_t cluster,
+                                  const std::vector<std::uint8_t>& hidden, std::vector<std::uint32_t>& entries) {
+  const unsigned nobody = (1U << targets[cluster].count) - 1;
+  const std::size_t begin = ranges_[cluster].begin;
+  std::vector<std::pair<unsigned, std::uint32_t>> partly;
+  std::size_t end = begin;
+  for (std::size_t k = 0; k < hidden.size(); ++k) {
+    const std::uint32_t entry = entries[begin + k];
+    if (hidden[k] == 0) {
+      entries[end++] = entry;
+    } else if (hidden[k] != nobody) {
+      partly.emplace_back(hidden[k], entry);
+    }
+  }
+  entries.resize(end);
+  ranges_[cluster].count = static_cast<std::uint32_t>(end - begin);
+  std::sort(partly.begin(), partly.end());
+  std::vector<HiddenRange>& parts = parts_[cluster / clusters_per_block];
+  for (const auto& [lanes, entry] : partly) {
+    if (part_ranges_[cluster].count == 0 || parts.back().hidden != lanes) {
+      parts.push_back({static_cast<std::uint32_t>(entries.size()), 0, lanes});
+      ++part_ranges_[cluster].count;
+    }
+    entries.push_back(entry);
+    ++parts.back().count;
+  }
 }
 
 template <bool periodic>
 void NeighborLists::build_blocks(const PointClusters& targets, const PointClusters& sources, float radius,
-                                 const Eigen::Vector3f& lengths) {
+                                 const Eigen::Vector3f& lengths, const Sight& sight) {
   ranges_.resize(targets.size());
   blocks_.resize((targets.size() + clusters_per_block - 1) / clusters_per_block);
+  part_ranges_.assign(sight ? targets.size() : 0, {});
+  parts_.resize(sight ? blocks_.size() : 0);
   const Period period(lengths);
   // Everything below compares float distances; this much more makes sure that nothing within the radius is missed.
   const float padded = radius * (1 + 1e-5F) + 1e-6F * lengths.maxCoeff();
@@ -109,9 +141,11 @@ void NeighborLists::build_blocks(const PointClusters& targets, const PointCluste
   {
     // Each thread collects the entries of a block here, so that the blocks themselves have no room to spare.
     std::vector<std::uint32_t> candidates, image, entries;
+    std::vector<std::uint8_t> hidden;
 #pragma omp for schedule(dynamic)
     for (std::size_t block = 0; block < blocks_.size(); ++block) {
       entries.clear();
+      if (sight) parts_[block].clear();
       const std::size_t end = std::min(targets.size(), (block + 1) * clusters_per_block);
       for (std::size_t first = block * clusters_per_block; first < end; first += clusters_per_query) {
         const std::size_t last = std::min(end, first + clusters_per_query);
@@ -129,6 +163,10 @@ void NeighborLists::build_blocks(const PointClusters& targets, const PointCluste
           const std::size_t begin = entries.size();
           append_lists<periodic>(targets, c, sources, candidates, padded * padded, period, entries);
           ranges_[c] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(entries.size() - begin)};
+          if (!sight) continue;
+          part_ranges_[c].begin = static_cast<std::uint32_t>(parts_[block].size());
+          hidden.assign(entries.size() - begin, 0);
+          if (sight(c, std::span(entries).subspan(begin), hidden)) sort_by_sight(targets, c, hidden, entries);
         }
       }
       std::vector<std::uint32_t>& kept = blocks_[block];
@@ -150,6 +188,8 @@ double NeighborLists::mean_length() const {
 std::size_t NeighborLists::memory_bytes() const {
   std::size_t bytes = ranges_.capacity() * sizeof(Range) + blocks_.capacity() * sizeof(decltype(blocks_)::value_type);
   for (const auto& block : blocks_) bytes += block.capacity() * sizeof(std::uint32_t);
+  bytes += part_ranges_.capacity() * sizeof(Range) + parts_.capacity() * sizeof(decltype(parts_)::value_type);
+  for (const auto& parts : parts_) bytes += parts.capacity() * sizeof(HiddenRange);
   return bytes;
 }
 

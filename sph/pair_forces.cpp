@@ -41,6 +41,7 @@ PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wa
   wall_barrier_from = static_cast<float>(2 * wall.compression);
   wall_viscosity = static_cast<float>(viscous * wall.friction_factor * wall_scale);
   wall_softening = static_cast<float>(0.01 * wall.support * wall.support / 4);
+  away = away_from_all(s);
   for (int a = 0; a < 3; ++a) {
     if (!s.periodic[a]) continue;
     period[a] = static_cast<float>(s.domain.max[a] - s.domain.min[a]);
@@ -72,6 +73,15 @@ struct Targets {
     x = load8(rows[0].data()), y = load8(rows[1].data()), z = load8(rows[2].data());
     vx = load8(rows[3].data()), vy = load8(rows[4].data()), vz = load8(rows[5].data());
     compression = load8(rows[6].data()), pressure = load8(rows[7].data());
+  }
+
+  // Takes the lanes whose bits are set out of reach, and brings the others back.
+  void hide(const FluidPack* packs, std::uint32_t count, unsigned lanes, const Eigen::Vector3f& away) {
+    const Float8 far = lanes_of(lanes);
+    const Targets own(packs, count);
+    x = own.x + far * broadcast(away.x());
+    y = own.y + far * broadcast(away.y());
+    z = own.z + far * broadcast(away.z());
   }
 };
 
@@ -224,14 +234,21 @@ void run_forces(const PairCoefficients& coefficients, const PairData& data) {
 #pragma omp parallel for schedule(dynamic, piece) num_threads(threads_for(data.fluid.size()))
   for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
-    const Targets targets(&data.fluid[first], count);
+    Targets targets(&data.fluid[first], count);
     Sums sums;
     constexpr bool variable = Viscosity::variable;
     const Float8 viscosity = variable ? load_viscosities(&data.viscosities[first], count) : Float8{};
-    for (const std::uint32_t j : data.fluid_lists->of_cluster(cluster)) {
-      const float other = variable ? data.viscosities[j] : 0.0F;
-      add_fluid<Kernel, Viscosity, continuity, with_xsph, periodic>(c, targets, data.fluid[j], viscosity, other, sums);
+    const std::size_t parts = data.fluid_lists->part_count(cluster);
+    for (std::size_t part = 0; part < parts; ++part) {
+      const auto [sources, hidden] = data.fluid_lists->part(cluster, part);
+      if (part > 0) targets.hide(&data.fluid[first], count, hidden, coefficients.away);
+      for (const std::uint32_t j : sources) {
+        const float other = variable ? data.viscosities[j] : 0.0F;
+        add_fluid<Kernel, Viscosity, continuity, with_xsph, periodic>(c, targets, data.fluid[j], viscosity, other,
+                                                                      sums);
+      }
     }
+    if (parts > 1) targets.hide(&data.fluid[first], count, 0, coefficients.away);
     for (const std::uint32_t b : data.wall_lists->of_cluster(cluster)) {
       add_wall<Kernel, Viscosity, periodic>(c, targets, data.walls[b], viscosity, sums);
     }
@@ -261,15 +278,19 @@ void run_densities(const PairCoefficients& coefficients, const PairData& data) {
 #pragma omp parallel for schedule(dynamic, piece) num_threads(threads_for(data.fluid.size()))
   for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
-    const Targets i(&data.fluid[first], count);
+    Targets i(&data.fluid[first], count);
     const auto kernel = [&](const auto& j, const Float8& inverse_support) {
       const auto [dx, dy, dz] = c.image.difference<periodic>(i.x, i.y, i.z, j);
       return Kernel::scaled_value(sqrt(dx * dx + dy * dy + dz * dz) * inverse_support);
     };
     Float8 sum{}, wall_sum{};
-    for (const std::uint32_t j : data.fluid_lists->of_cluster(cluster)) {
-      sum += kernel(data.fluid[j], c.inverse_support);
+    const std::size_t parts = data.fluid_lists->part_count(cluster);
+    for (std::size_t part = 0; part < parts; ++part) {
+      const auto [sources, hidden] = data.fluid_lists->part(cluster, part);
+      if (part > 0) i.hide(&data.fluid[first], count, hidden, coefficients.away);
+      for (const std::uint32_t j : sources) sum += kernel(data.fluid[j], c.inverse_support);
     }
+    if (parts > 1) i.hide(&data.fluid[first], count, 0, coefficients.away);
     for (const std::uint32_t b : data.wall_lists->of_cluster(cluster)) {
       wall_sum += broadcast(data.walls[b].volume) * kernel(data.walls[b], c.wall_inverse_support);
     }

@@ -10,6 +10,18 @@
 
 namespace flowskin::sph {
 
+/// A shift (m) out of reach of everything, along an axis that is not periodic: a particle that a wall hides is taken
+/// there. Zero where all axes are periodic.
+inline Eigen::Vector3f away_from_all(const SolverSettings& s) {
+  Eigen::Vector3f away = Eigen::Vector3f::Zero();
+  for (int a = 0; a < 3; ++a) {
+    if (s.periodic[a]) continue;
+    away[a] = static_cast<float>(1e9 * s.support_radius * s.spacing);
+    break;
+  }
+  return away;
+}
+
 /// Constants of the pair loops, worked out once from the settings. V is the volume of a particle divided by the kernel
 /// sum of the lattice, G the kernel's gradient scale (kernels.h); an index b means the kernel of the walls.
 struct PairCoefficients {
@@ -36,8 +48,9 @@ struct PairCoefficients {
   float wall_pressure = 0;             ///< G_b R_b^3 / (V G)
   float wall_viscosity = 0;            ///< as viscosity, with G_b R_b^3 and the walls' friction factor
   float wall_softening = 0;
-  float wall_barrier_from = 0;                   ///< Compression by walls, twice that of fluid at rest on a plane
-  float period[3] = {}, inverse_period[3] = {};  ///< m, 1/m; 0 along axes that are not periodic
+  float wall_barrier_from = 0;                     ///< Compression by walls, twice that of fluid at rest on a plane
+  float period[3] = {}, inverse_period[3] = {};    ///< m, 1/m; 0 along axes that are not periodic
+  Eigen::Vector3f away = Eigen::Vector3f::Zero();  ///< away_from_all() (m)
 };
 
 /// Result for one particle.

@@ -76,12 +76,20 @@ void run_shear_rates(const PairCoefficients& c, const PairData& data, std::span<
     std::array<Float8, 6> i{};
     for (std::size_t a = 0; a < i.size(); ++a) i[a] = load8(rows[a].data());
     Fit fit;
-    for (const std::uint32_t index : data.fluid_lists->of_cluster(cluster)) {
-      const FluidPack& j = data.fluid[index];
-      const Difference d = image.difference<periodic>(i[0], i[1], i[2], j);
-      const Float8 dx = unit * d.x, dy = unit * d.y, dz = unit * d.z;
-      const Float8 w = Kernel::shape(sqrt(dx * dx + dy * dy + dz * dz));
-      fit.add(w, dx, dy, dz, i[3] - broadcast(j.vx), i[4] - broadcast(j.vy), i[5] - broadcast(j.vz));
+    for (std::size_t part = 0; part < data.fluid_lists->part_count(cluster); ++part) {
+      const auto [sources, hidden] = data.fluid_lists->part(cluster, part);
+      std::array<Float8, 3> x{i[0], i[1], i[2]};
+      if (part > 0) {
+        const Float8 far = lanes_of(hidden);
+        for (std::size_t a = 0; a < 3; ++a) x[a] += far * broadcast(c.away[static_cast<int>(a)]);
+      }
+      for (const std::uint32_t index : sources) {
+        const FluidPack& j = data.fluid[index];
+        const Difference d = image.difference<periodic>(x[0], x[1], x[2], j);
+        const Float8 dx = unit * d.x, dy = unit * d.y, dz = unit * d.z;
+        const Float8 w = Kernel::shape(sqrt(dx * dx + dy * dy + dz * dz));
+        fit.add(w, dx, dy, dz, i[3] - broadcast(j.vx), i[4] - broadcast(j.vy), i[5] - broadcast(j.vz));
+      }
     }
     for (const std::uint32_t index : data.wall_lists->of_cluster(cluster)) {
       const WallPack& b = data.walls[index];

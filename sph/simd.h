@@ -20,6 +20,13 @@ typedef std::int32_t Int8 __attribute__((vector_size(32)));
 
 inline Float8 broadcast(float s) { return Float8{s, s, s, s, s, s, s, s}; }
 
+/// 1 in the lanes whose bits are set, 0 in the others.
+inline Float8 lanes_of(unsigned bits) {
+  Float8 lanes;
+  for (int k = 0; k < 8; ++k) lanes[k] = bits >> k & 1U ? 1.0F : 0.0F;
+  return lanes;
+}
+
 inline Float8 load8(const float* p) {
   Float8 r;
   std::memcpy(&r, p, sizeof r);

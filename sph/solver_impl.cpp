@@ -103,6 +103,8 @@ SolverImpl::SolverImpl(SimulationSetup setup)
     if (periodic_.along(a)) origin_[a] = 0.5 * (settings_.domain.min[a] + settings_.domain.max[a]);
   }
   boundary_.place_at_origin(origin_);
+  // Where all axes are periodic there is no place for what is hidden (PairCoefficients::away).
+  sees_walls_ = boundary_.has_thin() && !(periodic_.along(0) && periodic_.along(1) && periodic_.along(2));
 
   particles_.reserve(points.size(), settings_.xsph > 0, fluids_.size() > 1, !fluids_.empty());
   for (const FluidPoint& p : points)
@@ -390,13 +392,19 @@ void SolverImpl::build_lists(const PointView& places) {
   clusters_.assign(places, static_cast<float>(cluster_extent * settings_.spacing));
   const auto radius = static_cast<float>((settings_.support_radius + settings_.skin) * settings_.spacing);
   const Eigen::Vector3f period = periodic_.period().cast<float>();
-  fluid_lists_.build(clusters_, clusters_, radius, period);
+  NeighborLists::Sight sight;
+  if (sees_walls_) {
+    sight = [&](std::size_t cluster, std::span<const std::uint32_t> sources, std::vector<std::uint8_t>& hidden) {
+      return boundary_.hide(clusters_, places, cluster, sources, hidden);
+    };
+  }
+  fluid_lists_.build(clusters_, clusters_, radius, period, sight);
   const auto wall_reach = static_cast<float>(wall_kernel_.support + settings_.skin * settings_.spacing);
   boundary_.mark_build(clusters_.size());
   wall_lists_.build(clusters_, boundary_.clusters(), wall_reach, period);
   if (surface_tension_.active()) {
     const auto reach = static_cast<float>(surface_tension_.reach + settings_.skin * settings_.spacing);
-    tension_lists_.build(clusters_, clusters_, reach, period);
+    tension_lists_.build(clusters_, clusters_, reach, period, sight);
     if (!boundary_.adhesions().empty()) adhesion_lists_.build(clusters_, boundary_.clusters(), reach, period);
   }
   collect_wall_triangles();

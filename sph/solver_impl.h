@@ -96,6 +96,7 @@ class SolverImpl {
   std::vector<JetEmitter> emitters_;
   std::vector<Sink> sinks_;
   BoundaryParticles boundary_;
+  bool sees_walls_ = false;  // thin walls hide fluid from fluid
   ParticleArrays particles_;
   std::uint64_t next_id_ = 0;
 

@@ -78,6 +78,14 @@ Vector8 difference(const SurfaceTension& model, const std::array<Float8, 3>& p, 
   return d;
 }
 
+// The places with the lanes whose bits are set out of reach.
+std::array<Float8, 3> without(const SurfaceTension& model, std::array<Float8, 3> places, unsigned hidden) {
+  if (hidden == 0) return places;
+  const Float8 far = lanes_of(hidden);
+  for (std::size_t a = 0; a < 3; ++a) places[a] += far * broadcast(model.away[static_cast<int>(a)]);
+  return places;
+}
+
 struct Sum3 {
   Float8 x{}, y{}, z{};
   void add(const Float8& f, const Vector8& d) {
@@ -94,10 +102,14 @@ void find_stresses(const SurfaceTension& model, const SurfaceTensionData& data, 
   const std::array<Float8, 3> place = load_positions(&data.fluid[first], count);
   const Float8 inverse_reach = broadcast(model.inverse_reach);
   Sum3 sum;
-  for (const std::uint32_t neighbor : data.fluid_lists->of_cluster(c)) {
-    const FluidPack& j = data.fluid[neighbor];
-    const Vector8 d = difference<periodic>(model, place, j);
-    sum.add(Kernel::shape(d.length() * inverse_reach), d);
+  for (std::size_t part = 0; part < data.fluid_lists->part_count(c); ++part) {
+    const auto [sources, hidden] = data.fluid_lists->part(c, part);
+    const std::array<Float8, 3> seen = without(model, place, hidden);
+    for (const std::uint32_t neighbor : sources) {
+      const FluidPack& j = data.fluid[neighbor];
+      const Vector8 d = difference<periodic>(model, seen, j);
+      sum.add(Kernel::shape(d.length() * inverse_reach), d);
+    }
   }
   for (std::uint32_t k = 0; k < count; ++k) {
     const Eigen::Vector3f g(sum.x[k], sum.y[k], sum.z[k]);
@@ -119,20 +131,24 @@ void add_stress_forces(const SurfaceTension& model, const SurfaceTensionData& da
   bool surface = false;
   for (std::uint32_t k = 0; k < count; ++k) surface = surface || data.stresses[first + k].stress > 0;
   const Float8 inverse_reach = broadcast(model.inverse_reach);
-  for (const std::uint32_t neighbor : data.fluid_lists->of_cluster(c)) {
-    const SurfaceStress& t = data.stresses[neighbor];
-    if (!surface && t.stress == 0) continue;  // both inside the fluid
-    const FluidPack& j = data.fluid[neighbor];
-    const Vector8 d = difference<periodic>(model, place, j);  // the stress pulls: against d
-    const Float8 mx = broadcast(t.nx), my = broadcast(t.ny), mz = broadcast(t.nz), other = broadcast(t.stress);
-    const Float8 s = Kernel::shape(d.length() * inverse_reach);
-    const Float8 own = s * stress * (nx * d.x + ny * d.y + nz * d.z),
-                 its = s * other * (mx * d.x + my * d.y + mz * d.z);
-    // In this order the sums are the same for both particles, up to the sign.
-    sum.add(-s * (stress + other), d);
-    sum.x += own * nx + its * mx;
-    sum.y += own * ny + its * my;
-    sum.z += own * nz + its * mz;
+  for (std::size_t part = 0; part < data.fluid_lists->part_count(c); ++part) {
+    const auto [sources, hidden] = data.fluid_lists->part(c, part);
+    const std::array<Float8, 3> seen = without(model, place, hidden);
+    for (const std::uint32_t neighbor : sources) {
+      const SurfaceStress& t = data.stresses[neighbor];
+      if (!surface && t.stress == 0) continue;  // both inside the fluid
+      const FluidPack& j = data.fluid[neighbor];
+      const Vector8 d = difference<periodic>(model, seen, j);  // the stress pulls: against d
+      const Float8 mx = broadcast(t.nx), my = broadcast(t.ny), mz = broadcast(t.nz), other = broadcast(t.stress);
+      const Float8 s = Kernel::shape(d.length() * inverse_reach);
+      const Float8 own = s * stress * (nx * d.x + ny * d.y + nz * d.z),
+                   its = s * other * (mx * d.x + my * d.y + mz * d.z);
+      // In this order the sums are the same for both particles, up to the sign.
+      sum.add(-s * (stress + other), d);
+      sum.x += own * nx + its * mx;
+      sum.y += own * ny + its * my;
+      sum.z += own * nz + its * mz;
+    }
   }
 }
 
@@ -178,6 +194,7 @@ SurfaceTension::SurfaceTension(const SolverSettings& s) {
   const double volume = s.spacing * s.spacing * s.spacing, mass = s.rest_density * volume;
   reach = reach_in_spacings * s.spacing;
   inverse_reach = static_cast<float>(1 / reach);
+  away = away_from_all(s);
   for (int a = 0; a < 3; ++a) {
     if (!s.periodic[a]) continue;
     periodic = true;

@@ -31,7 +31,8 @@ struct SurfaceTension {
   float stress_scale = 0;    ///< K gamma V^2 G / m
   float period[3] = {}, inverse_period[3] = {};  ///< m, 1/m; 0 along axes that are not periodic
   bool periodic = false;
-  float wall_attraction = 0;  ///< Acceleration over distance, per adhesion and area (1/(m^2 s^2)).
+  Eigen::Vector3f away = Eigen::Vector3f::Zero();  ///< away_from_all() (m)
+  float wall_attraction = 0;                       ///< Acceleration over distance, per adhesion and area (1/(m^2 s^2)).
 };
 
 /// Speed of sound (m/s) at which the pressure in a drop as small as a spacing, 2 gamma / spacing, compresses by 1 %.

@@ -65,6 +65,8 @@ WallGuard::Crossing WallGuard::enter_gap(const Vec3& from, const Vec3& to,
                                          const std::vector<std::uint32_t>& candidates) const {
   const Vec3 way = to - from;
   const double length = way.norm();
+  // Cells with a gap reach farther than a path.
+  if (!std::binary_search(gap_cells_.begin(), gap_cells_.end(), cell_at(to, gap_width_))) return {};
   const int pieces = static_cast<int>(std::ceil(path_pieces * length / gap_width_));
   for (int k = 1; k <= pieces; ++k) {
     Crossing gap = gap_at(from + (double(k) / pieces) * way, candidates);
@@ -112,8 +114,11 @@ void WallGuard::find_gaps(const std::vector<Vec3>& samples, double sample_spacin
         const Vec3 middle = 0.5 * (a + b);
         if (other_way_round || is_on_wall(middle, on_wall * (a - b).norm(), near)) return false;
         if (!gap_at(middle, near).crossed) return false;
-        periodic.for_each_touching_image(middle - margin, middle + margin,
-                                         [&](const Vec3& shift) { found.push_back(cell_at(middle + shift)); });
+        periodic.for_each_touching_image(middle - margin, middle + margin, [&](const Vec3& shift) {
+          const Vec3 around = Vec3::Constant(gap_width_);
+          for_each_cell(middle + shift - around, middle + shift + around, gap_width_,
+                        [&](std::uint64_t cell) { found.push_back(cell); });
+        });
         return false;
       });
     }
@@ -142,7 +147,7 @@ bool WallGuard::collect(const Vec3& low, const Vec3& high, double margin, std::v
 bool WallGuard::near_gap(const Vec3& low, const Vec3& high) const {
   if (gap_cells_.empty()) return false;
   bool near = false;
-  for_each_cell(low - Vec3::Constant(gap_width_), high + Vec3::Constant(gap_width_), [&](std::uint64_t cell) {
+  for_each_cell(low, high, gap_width_, [&](std::uint64_t cell) {
     near = near || std::binary_search(gap_cells_.begin(), gap_cells_.end(), cell);
   });
   return near;

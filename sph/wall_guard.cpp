@@ -30,8 +30,8 @@ WallGuard::WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, 
   // A triangle is entered in every cell of its box that its plane comes near.
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     const Triangle& tri = triangles_[t];
-    const auto first = cell_of(tri.a.cwiseMin(tri.b).cwiseMin(tri.c));
-    const auto last = cell_of(tri.a.cwiseMax(tri.b).cwiseMax(tri.c));
+    const auto first = cell_of(tri.a.cwiseMin(tri.b).cwiseMin(tri.c), cell_size_);
+    const auto last = cell_of(tri.a.cwiseMax(tri.b).cwiseMax(tri.c), cell_size_);
     for (auto x = first[0]; x <= last[0]; ++x) {
       for (auto y = first[1]; y <= last[1]; ++y) {
         for (auto z = first[2]; z <= last[2]; ++z) {
@@ -46,14 +46,14 @@ WallGuard::WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, 
   });
 }
 
-std::array<std::int64_t, 3> WallGuard::cell_of(const Vec3& p) const {
-  const Vec3 q = (p - origin_) / cell_size_;
+std::array<std::int64_t, 3> WallGuard::cell_of(const Vec3& p, double cell_size) const {
+  const Vec3 q = (p - origin_) / cell_size;
   return {static_cast<std::int64_t>(std::floor(q.x())), static_cast<std::int64_t>(std::floor(q.y())),
           static_cast<std::int64_t>(std::floor(q.z()))};
 }
 
-std::uint64_t WallGuard::cell_at(const Vec3& p) const {
-  const auto [x, y, z] = cell_of(p);
+std::uint64_t WallGuard::cell_at(const Vec3& p, double cell_size) const {
+  const auto [x, y, z] = cell_of(p, cell_size);
   return cell_key(x, y, z);
 }
 
@@ -63,10 +63,32 @@ std::uint64_t WallGuard::cell_key(std::int64_t x, std::int64_t y, std::int64_t z
          (static_cast<std::uint64_t>(z) & mask);
 }
 
+std::vector<std::uint64_t> WallGuard::cells_within(double distance) const {
+  constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
+  const auto reach = static_cast<std::int64_t>(std::ceil(distance / cell_size_));
+  std::vector<std::uint64_t> cells;
+  for (std::size_t k = 0; k < entries_.size(); ++k) {
+    const std::uint64_t cell = entries_[k].cell;
+    if (k > 0 && entries_[k - 1].cell == cell) continue;
+    for (auto x = -reach; x <= reach; ++x) {
+      for (auto y = -reach; y <= reach; ++y) {
+        for (auto z = -reach; z <= reach; ++z) {
+          cells.push_back(cell_key(static_cast<std::int64_t>(cell >> 42 & mask) + x,
+                                   static_cast<std::int64_t>(cell >> 21 & mask) + y,
+                                   static_cast<std::int64_t>(cell & mask) + z));
+        }
+      }
+    }
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
 void WallGuard::query(const Vec3& box_min, const Vec3& box_max, std::vector<std::uint32_t>& found) const {
   found.clear();
   if (triangles_.empty()) return;
-  for_each_cell(box_min, box_max, [&](std::uint64_t key) {
+  for_each_cell(box_min, box_max, cell_size_, [&](std::uint64_t key) {
     auto entry = std::lower_bound(entries_.begin(), entries_.end(), key,
                                   [](const CellEntry& e, std::uint64_t k) { return e.cell < k; });
     for (; entry != entries_.end() && entry->cell == key; ++entry) found.push_back(entry->triangle);

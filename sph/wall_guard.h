@@ -58,26 +58,30 @@ class WallGuard {
   /// @param normal out: unit vector out of the gap
   bool keep_out(const Vec3& from, const std::vector<std::uint32_t>& candidates, Vec3& to, Vec3& normal) const;
 
-  std::size_t triangle_count() const { return triangles_.size(); }
-  std::size_t memory_bytes() const;
-
- private:
   struct Triangle {
     Vec3 a, b, c, normal;
   };
+  const Triangle& triangle(std::uint32_t t) const { return triangles_[t]; }
+  std::size_t triangle_count() const { return triangles_.size(); }
+  /// The cells that a place is in from which a triangle may be within the distance (m), in ascending order.
+  std::vector<std::uint64_t> cells_within(double distance) const;
+  std::uint64_t cell_at(const Vec3& p) const { return cell_at(p, cell_size_); }
+  std::size_t memory_bytes() const;
+
+ private:
   struct CellEntry {
     std::uint64_t cell;
     std::uint32_t triangle;
   };
   struct Touch;
   std::uint64_t cell_key(std::int64_t x, std::int64_t y, std::int64_t z) const;
-  std::array<std::int64_t, 3> cell_of(const Vec3& p) const;
-  std::uint64_t cell_at(const Vec3& p) const;
+  std::array<std::int64_t, 3> cell_of(const Vec3& p, double cell_size) const;
+  std::uint64_t cell_at(const Vec3& p, double cell_size) const;
   /// Calls visit(key) for the cells that touch the box.
   template <typename Visit>
-  void for_each_cell(const Vec3& low, const Vec3& high, Visit visit) const;
+  void for_each_cell(const Vec3& low, const Vec3& high, double cell_size, Visit visit) const;
   double hair() const { return 1e-6 * cell_size_; }
-  /// Whether a gap may be within its width of the box.
+  /// Whether a place in the box may be in a gap.
   bool near_gap(const Vec3& low, const Vec3& high) const;
   bool is_on_wall(const Vec3& p, double distance, const std::vector<std::uint32_t>& candidates) const;
   /// Whether no other triangle that the place lies on comes nearer.
@@ -92,12 +96,12 @@ class WallGuard {
   std::vector<Triangle> triangles_;
   std::vector<CellEntry> entries_;  // ordered by cell, then triangle
   double gap_width_ = 0;
-  std::vector<std::uint64_t> gap_cells_;  // with a gap in them, in ascending order
+  std::vector<std::uint64_t> gap_cells_;  // of the size gap_width_, with a gap within that of them; in ascending order
 };
 
 template <typename Visit>
-void WallGuard::for_each_cell(const Vec3& low, const Vec3& high, Visit visit) const {
-  const auto first = cell_of(low), last = cell_of(high);
+void WallGuard::for_each_cell(const Vec3& low, const Vec3& high, double cell_size, Visit visit) const {
+  const auto first = cell_of(low, cell_size), last = cell_of(high, cell_size);
   for (auto x = first[0]; x <= last[0]; ++x) {
     for (auto y = first[1]; y <= last[1]; ++y) {
       for (auto z = first[2]; z <= last[2]; ++z) visit(cell_key(x, y, z));

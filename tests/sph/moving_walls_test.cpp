@@ -65,7 +65,7 @@ TEST(MovingWall, SweepsOverNothing) {
   BoundaryMotion motion;
   motion.keyframes = {{0, zero, zero}, {1, {0.2, 0, 0}, {0, 0, 2000}}};
   const TriangleMesh plate = sheet(1, 0);
-  MovingWall wall(motion, zero, plate, {}, 0, 0.1, 0.2, {});
+  MovingWall wall(motion, zero, plate, {}, 0, 0.1, 0.2, 0.5, {});
   Random random(3);
   struct Point {
     Vec3 place;

@@ -64,6 +64,43 @@ TEST(NeighborLists, RandomPoints) {
   for (const float radius : {0.05F, 0.2F, 3.0F}) expect_right_lists(points, points, radius, 0.3F);
 }
 
+TEST(NeighborLists, HiddenSourcesAreSeenByTheOthersOnly) {
+  // Whether a pair sees each other is a number of the two: each pair of the plain lists comes up once or never.
+  const Points points = sorted_along_curve(random_points(1500, 4), 0.1F);
+  PointClusters clusters;
+  clusters.assign(points, 0.3F);
+  const auto sees = [](std::size_t a, std::size_t b) { return a == b || (a * b + a + b) % 3 != 0; };
+  const auto sight = [&](std::size_t c, std::span<const std::uint32_t> sources, std::vector<std::uint8_t>& hidden) {
+    if (c % 5 == 0) return false;
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      for (std::uint32_t k = 0; k < clusters[c].count; ++k) {
+        if (!sees(clusters[c].first + k, sources[s])) hidden[s] = static_cast<std::uint8_t>(hidden[s] | 1U << k);
+      }
+    }
+    return true;
+  };
+  NeighborLists plain, lists;
+  plain.build(clusters, clusters, 0.15F);
+  for (int build = 0; build < 2; ++build) lists.build(clusters, clusters, 0.15F, Eigen::Vector3f::Zero(), sight);
+  std::size_t parts = 0;
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    parts += lists.part_count(c) - 1;
+    for (std::uint32_t k = 0; k < clusters[c].count; ++k) {
+      std::vector<std::uint32_t> wanted, seen;
+      for (const std::uint32_t s : plain.of_cluster(c)) {
+        if (c % 5 == 0 || sees(clusters[c].first + k, s)) wanted.push_back(s);
+      }
+      for (std::size_t part = 0; part < lists.part_count(c); ++part) {
+        const NeighborLists::Part list = lists.part(c, part);
+        if ((list.hidden >> k & 1U) == 0) seen.insert(seen.end(), list.sources.begin(), list.sources.end());
+      }
+      std::sort(seen.begin(), seen.end());
+      EXPECT_EQ(seen, wanted);
+    }
+  }
+  EXPECT_GT(parts, clusters.size());
+}
+
 TEST(NeighborLists, ClusteredPoints) {
   Points points = random_points(1200, 2);
   for (std::size_t i = 0; i < points.size(); ++i) {
