@@ -1,6 +1,6 @@
 // The tests of this folder, and without them the table of any scenes:
 //   tests_surfaces [GTEST OPTIONS]
-//   tests_surfaces --table [--frames N] [SCENE.json...]     default: the scenes of the tests
+//   tests_surfaces --table [--frames N] [--every-frame] [SCENE.json...]     default: the scenes of the tests
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -18,9 +18,12 @@ int print_table(const std::vector<std::string>& arguments) {
   using namespace flowskin::surfaces;
   std::vector<std::filesystem::path> files;
   int most_frames = 0;
+  bool every_frame = false;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] == "--frames" && i + 1 < arguments.size()) {
       most_frames = std::atoi(arguments[++i].c_str());
+    } else if (arguments[i] == "--every-frame") {
+      every_frame = true;
     } else {
       files.emplace_back(arguments[i]);
     }
@@ -28,7 +31,10 @@ int print_table(const std::vector<std::string>& arguments) {
   if (files.empty()) files = tested_scenes();
   std::vector<SceneMeasures> scenes;
   for (const auto& file : files) {
-    scenes.push_back(measure_scene(file, most_frames));
+    scenes.push_back(measure_scene(file, most_frames, [&](const SceneMeasures& so_far) {
+      if (every_frame) std::printf("%s", frame_line(so_far).c_str());
+      std::fflush(stdout);
+    }));
     for (const auto& violation : violations(scenes.back())) std::printf("%s\n", violation.sentence.c_str());
     std::fflush(stdout);
   }

@@ -61,7 +61,7 @@ class Run {
     first_ = tracker_->mesh();
   }
 
-  SceneMeasures run(int most_frames) {
+  SceneMeasures run(int most_frames, const std::function<void(const SceneMeasures&)>& after_frame) {
     const int frames = most_frames > 0 ? std::min(most_frames, scene_.frames) : scene_.frames;
     for (int frame = 0; frame <= frames; ++frame) {
       FrameMeasures measures;
@@ -69,6 +69,7 @@ class Run {
       if (frame > 0) advance(frame, measures);
       timed(result_.seconds_checks, [&] { return measure(measures), 0; });
       result_.frames.push_back(std::move(measures));
+      if (after_frame) after_frame(result_);
     }
     if (is_back()) result_.round_trip = round_trip();
     return std::move(result_);
@@ -82,6 +83,8 @@ class Run {
       const double time = (frame - 1 + double(step) / scene_.tracking.steps_per_frame) / scene_.frame_rate;
       timed(result_.seconds_source, [&] { return source_->advance_to(time), 0; });
       timed(result_.seconds_tracking, [&] { return tracker_->advance(particles()), 0; });
+      measures.regions += tracker_->report().regions;
+      measures.born += tracker_->report().born;
       if (!tracker_->report().reextracted) continue;
       ++measures.reextractions;
       measures.reason = tracker_->report().reason;
@@ -96,6 +99,9 @@ class Run {
     measures.vertices = mesh.positions.size();
     measures.problems = tracking::mesh_problems(mesh);
     measures.volume = tracking::mesh_volume(mesh.positions, mesh.triangles);
+    const double area = tracking::mesh_area(mesh.positions, mesh.triangles);
+    if (area_before_ > 0) measures.area_lost = std::max(0.0, 1 - area / area_before_);
+    area_before_ = area;
     measure_triangles(mesh, measures);
     if (!now.positions.empty()) {
       const MetaballField field = tracking::field_of(now, field_settings);
@@ -169,13 +175,15 @@ class Run {
   std::optional<tracking::Tracker> tracker_;
   SurfaceMesh first_;
   std::vector<std::uint64_t> ids_before_;
+  double area_before_ = 0;
   SceneMeasures result_;
 };
 
 }  // namespace
 
-SceneMeasures measure_scene(const std::filesystem::path& scene_file, int most_frames) {
-  return Run(scene_file).run(most_frames);
+SceneMeasures measure_scene(const std::filesystem::path& scene_file, int most_frames,
+                            const std::function<void(const SceneMeasures&)>& after_frame) {
+  return Run(scene_file).run(most_frames, after_frame);
 }
 
 }  // namespace flowskin::surfaces

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -25,7 +26,8 @@ inline constexpr double narrow_triangles = 0.001;
 inline constexpr double shortest_edge = 0.5, longest_edge = 1.5;
 inline constexpr double odd_edges = 0.01;
 /// Share of the vertices of the frame before that are still there, by id: where components and Euler characteristic
-/// are those of the frame before, and where they are not.
+/// are those of the frame before, and where they are not. Where the surface itself contracts, its vertices must go for
+/// edges to keep their length: the share of its area that is gone does not count in the first case.
 inline constexpr double ids_kept = 0.98, ids_kept_through_change = 0.90;
 /// Median distance between a vertex's rest position and that of the particles beneath it, at the end, in spacings.
 inline constexpr double material_drift = 1;
@@ -48,6 +50,7 @@ struct FrameMeasures {
   Shape shape, fresh_shape;   ///< Of the tracked surface and of a fresh extraction.
   bool borderline = false;    ///< They differ by components close to the limit of those left out, and by nothing else.
   double volume = 0;          ///< m^3
+  double area_lost = 0;       ///< Share of the area of the frame before that is gone; 0 where the surface grows.
   double volume_error = 0;    ///< Relative to that of a fresh extraction.
   double hausdorff = 0;       ///< In target edge lengths.
   double field_distance = 0;  ///< Largest |f| / |grad f| at a vertex, in effective radii.
@@ -55,6 +58,7 @@ struct FrameMeasures {
   double ids_kept = 1;        ///< Of the vertices of the frame before.
   bool change = false;        ///< The fluid's topology is not that of the frame before.
   double material_drift = 0;  ///< Median, in spacings; 0 where the source knows no material.
+  int regions = 0, born = 0;  ///< Replaced, and their vertices, since the frame before.
   int reextractions = 0;      ///< By the guard, since the frame before.
   std::string reason;         ///< Of the last of them.
 };
@@ -75,7 +79,9 @@ struct SceneMeasures {
 };
 
 /// @param most_frames stop after so many frames; 0: all of the scene
-SceneMeasures measure_scene(const std::filesystem::path& scene_file, int most_frames = 0);
+/// @param after_frame is called with what has been measured so far
+SceneMeasures measure_scene(const std::filesystem::path& scene_file, int most_frames = 0,
+                            const std::function<void(const SceneMeasures&)>& after_frame = {});
 
 /// A limit that some frames do not keep.
 struct Violation {
@@ -88,6 +94,9 @@ std::vector<Violation> violations(const SceneMeasures& measures);
 
 /// Scenes with the worst frame of each measure, as aligned text or Markdown; what is beyond its limit carries a `!`.
 std::string worst_table(const std::vector<SceneMeasures>& scenes);
+
+/// The last frame of a scene with all its measures, as a line of a table; for the first frame with the table's heading.
+std::string frame_line(const SceneMeasures& scene);
 
 /// Scenes that come back: volume, return error and texture error.
 std::string return_table(const std::vector<SceneMeasures>& scenes);

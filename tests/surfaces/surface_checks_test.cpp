@@ -75,5 +75,14 @@ TEST(SurfaceChecks, ManyIdsMayGoWithATopologyChangeAndDriftCountsAtTheEnd) {
   EXPECT_THAT(sentences_of(scene), ElementsAre(HasSubstr("drift")));
 }
 
+TEST(SurfaceChecks, IdsMayGoWithTheAreaButNotBeyondIt) {
+  SceneMeasures scene = sound_scene();
+  scene.frames[2].ids_kept = 0.94;
+  scene.frames[2].area_lost = 0.045;
+  EXPECT_THAT(sentences_of(scene), IsEmpty());
+  scene.frames[2].area_lost = 0.03;
+  EXPECT_THAT(sentences_of(scene), ElementsAre(HasSubstr("beyond the share of the area lost")));
+}
+
 }  // namespace
 }  // namespace flowskin::surfaces

@@ -138,5 +138,32 @@ TEST(Remesh, SpringsOfEdgesThatStayKeepTheirRestLength) {
   EXPECT_GT(kept, 100);
 }
 
+TEST(Remesh, TargetsFollowTheCurvature) {
+  Ball body = ball(5.2);
+  RemeshSettings settings;
+  settings.edge_length = kEdge;
+  EXPECT_TRUE(sizes_by_curvature(body.field, settings, body.mesh.positions).empty());
+  // A ball of radius 5.6 or so, all over: its particles make bumps of a few per cent of that.
+  settings.curvature = 0.1;
+  const std::vector<double> sizes = sizes_by_curvature(body.field, settings, body.mesh.positions);
+  double mean = 0, radius = 0;
+  for (std::size_t v = 0; v < sizes.size(); ++v) {
+    EXPECT_GE(sizes[v], settings.finest);
+    EXPECT_LE(sizes[v], 1);
+    mean += sizes[v] / double(sizes.size());
+    radius += body.mesh.positions[v].norm() / double(sizes.size());
+  }
+  EXPECT_NEAR(mean, 0.1 * radius / kEdge, 0.15);
+  SurfaceMesh fine = body.mesh, plain = body.mesh;
+  for (int pass = 0; pass < 6; ++pass) {
+    remesh(body.field, settings, fine);
+    RemeshSettings same = settings;
+    same.curvature = 0;
+    remesh(body.field, same, plain);
+  }
+  EXPECT_EQ(test::joined(mesh_problems(fine)), "");
+  EXPECT_GT(fine.positions.size(), 1.1 * plain.positions.size());
+}
+
 }  // namespace
 }  // namespace flowskin::tracking

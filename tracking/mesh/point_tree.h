@@ -22,4 +22,7 @@ struct PointCloud {
 using PointTree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>, PointCloud, 3, int>;
 
+/// Number of the nearest one of `targets` for each query, -1 where none is within reach (m).
+std::vector<int> nearest_points(const std::vector<Vec3>& targets, const std::vector<Vec3>& queries, double reach);
+
 }  // namespace flowskin::tracking

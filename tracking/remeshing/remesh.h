@@ -1,6 +1,7 @@
 // Keeps the edges of a stretching mesh near their target length: split, collapse, flip. See docs/remeshing.md.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "tracking/advection/projection.h"
@@ -16,6 +17,9 @@ struct RemeshSettings {
   double longest = 1.35;        ///< A longer edge is split in the middle.
   double shortest = 0.5;        ///< A shorter edge is collapsed into one of its ends.
   double delaunay_slack = 0.5;  ///< An edge is flipped where its opposite angles exceed 180 degrees by this (rad).
+  double curvature =
+      0;  ///< The target is at most this multiple of the smaller radius of curvature; 0: the same everywhere.
+  double finest = 0.5;  ///< But not less than this.
 };
 
 /// How often each operation was done.
@@ -28,6 +32,17 @@ struct RemeshReport {
 /// the middle of a split edge takes the mean of its ends' rest positions, a new id, and is put on the surface.
 /// @pre `mesh` is closed and two-manifold; it stays so.
 RemeshReport remesh(const MetaballField& field, const RemeshSettings& settings, SurfaceMesh& mesh);
+
+/// The same on any surface.
+/// @param put_on_surface moves points onto it
+/// @param sizes the target at each vertex, in edge lengths; an edge takes the smaller one of its ends. Empty: 1.
+RemeshReport remesh(const std::function<void(std::vector<Vec3>&)>& put_on_surface, const RemeshSettings& settings,
+                    SurfaceMesh& mesh, std::vector<double> sizes = {});
+
+/// Targets by curvature at points on the surface, in edge lengths: `curvature` times the smaller radius of curvature,
+/// held between `finest` and 1.
+std::vector<double> sizes_by_curvature(const MetaballField& field, const RemeshSettings& settings,
+                                       const std::vector<Vec3>& positions);
 
 /// Rest lengths of the springs after remeshing: an edge that was there before keeps its own, a new one takes its
 /// present length, held between 0.7 and 1.3 target lengths.

@@ -13,15 +13,21 @@
 #include "tracking/mesh/self_intersections.h"
 #include "tracking/topology/disagreement.h"
 #include "tracking/topology/replace_region.h"
+#include "tracking/topology/small_parts.h"
 #include "tracking/topology/strays.h"
 
 namespace flowskin::tracking {
 namespace {
 
-constexpr int kRounds = 6;
+constexpr int kRounds = 9;
 constexpr double kDust = 0.05;                       // volume of a component that is not worth its triangles, in cells
+constexpr double kResolved = 0.3;                    // cells; how well the grid knows the surface where it resolves it
+constexpr double kFarApart = 0.45;                   // cells; the two surfaces are not to be so far from each other
 constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};  // cells; a thin neck is near its stumps
-constexpr int kGrowths[] = {1, 2, 3, 4, 5, 6, 8, 10};  // layers of cells around a place of disagreement, until it works
+constexpr int kComparisons = 2;                      // of mesh and grid in one call
+constexpr int kAttempts = 30;                        // to fit a region in, until it has grown to where it does
+constexpr int kAllAroundEvery = 6;                   // attempts the region grows as a whole
+constexpr int kTimes = 4;                            // that a place may be named in one call
 constexpr int kFocus = 2;  // layers of cells around a replaced region that are looked at again
 
 std::vector<Box> boxes_of(const SparseGrid& grid, const SurfaceMesh& mesh) {
@@ -52,6 +58,12 @@ std::vector<int> spoilt_triangles(const SurfaceMesh& mesh, const Projection& pro
   return found;
 }
 
+void add(const std::vector<CellSet::Cell>& cells, CellSet& set) {
+  std::vector<CellSet::Cell> all = set.cells();
+  all.insert(all.end(), cells.begin(), cells.end());
+  set = CellSet(std::move(all));
+}
+
 // All triangles, or those that meet the cells.
 std::vector<int> triangles_in(const CellSet* cells, const std::vector<Box>& boxes) {
   std::vector<int> found;
@@ -61,71 +73,72 @@ std::vector<int> triangles_in(const CellSet* cells, const std::vector<Box>& boxe
   return found;
 }
 
-// A region to be replaced.
-struct Region {
-  CellSet cells;
-  Finish finish;
-};
-
 // What is found in one round, and where to look in the next.
 class PlacesToMend {
  public:
   PlacesToMend(const FieldGrid& fresh, double depth) : fresh_(fresh), depth_(depth) {}
 
-  // The regions with something to mend. What fresh, evened surface did not mend gets surface straight from marching
-  // cubes, which does not intersect itself; what that does not mend is left as it is.
-  std::vector<Region> find(const SurfaceMesh& mesh, const Projection& projection) {
+  // The regions with something to mend. What is still spoilt when it has been replaced is replaced in wider and wider
+  // regions, and in the end left as it is.
+  std::vector<CellSet> find(const SurfaceMesh& mesh, const Projection& projection, const SurfaceGeometry& expected) {
     std::vector<CellSet::Cell> cells;
     // Fresh surface agrees with the signs of the grid.
-    if (!focus_) cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, mesh.positions, mesh.triangles);
+    if (!focus_) cells = places_of_disagreement(mesh, expected);
     const std::vector<Box> boxes = boxes_of(fresh_.grid, mesh);
     const std::vector<int> looked_at = triangles_in(focus_ ? &*focus_ : nullptr, boxes);
     for (int t : spoilt_triangles(mesh, projection, looked_at)) add_cells(boxes[t].low, boxes[t].high, cells);
-    std::erase_if(cells, [&](const CellSet::Cell& cell) { return twice_.contains(cell); });
-    const CellSet again([&] {
-      std::vector<CellSet::Cell> known = cells;
-      std::erase_if(known, [&](const CellSet::Cell& cell) { return !once_.contains(cell); });
-      return known;
-    }());
-    add(cells, once_);
-    add(again.cells(), twice_);
-    return regions(CellSet(std::move(cells)), again);
+    std::erase_if(cells, [&](const CellSet::Cell& cell) { return named_[kTimes - 1].contains(cell); });
+    const CellSet named(std::move(cells));
+    std::vector<CellSet::Cell> widened = named.cells();
+    for (int k = kTimes - 1; k >= 0; --k) {
+      // Named k + 1 times before.
+      std::vector<CellSet::Cell> again;
+      for (const auto& cell : named.cells()) {
+        if (named_[k].contains(cell)) again.push_back(cell);
+      }
+      if (k + 1 < kTimes) add(again, named_[k + 1]);
+      const CellSet wider = CellSet(std::move(again)).dilated(1 + k);
+      widened.insert(widened.end(), wider.cells().begin(), wider.cells().end());
+    }
+    add(named.cells(), named_[0]);
+    return regions(CellSet(std::move(widened)));
   }
 
   // Parts that only one of the two surfaces has; looked for more and more closely.
-  std::vector<Region> find_strays(const SurfaceMesh& mesh, const SurfaceGeometry& expected) {
+  std::vector<CellSet> find_strays(const SurfaceMesh& mesh, const SurfaceGeometry& expected) {
     if (stray_round_ == std::ssize(kStrayReaches)) return {};
     const double spacing = fresh_.grid.spacing();
     const Strays strays(fresh_.grid, kStrayReaches[stray_round_] * spacing, mesh.positions, mesh.triangles, expected);
     while (stray_round_ < std::ssize(kStrayReaches)) {
       const CellSet cells(strays.farther_than(kStrayReaches[stray_round_++] * spacing));
-      if (!cells.empty()) return regions(cells, {});
+      if (!cells.empty()) return regions(cells);
     }
     return {};
   }
 
  private:
-  static void add(const std::vector<CellSet::Cell>& cells, CellSet& set) {
-    std::vector<CellSet::Cell> all = set.cells();
-    all.insert(all.end(), cells.begin(), cells.end());
-    set = CellSet(std::move(all));
+  // Where signs differ; and of the features that the grid hardly resolves, those that only one of the surfaces has.
+  std::vector<CellSet::Cell> places_of_disagreement(const SurfaceMesh& mesh, const SurfaceGeometry& expected) const {
+    std::vector<CellSet::Cell> doubtful;
+    std::vector<CellSet::Cell> cells =
+        disagreeing_cells(fresh_.field, fresh_.grid, depth_, mesh.positions, mesh.triangles, &doubtful);
+    for (const auto& cell : unresolved_cells(fresh_.grid, kResolved, mesh.positions)) doubtful.push_back(cell);
+    const CellSet where(std::move(doubtful));
+    const double reach = kFarApart * fresh_.grid.spacing();
+    const Strays strays(fresh_.grid, reach, mesh.positions, mesh.triangles, expected, &where);
+    for (const auto& cell : strays.farther_than(reach)) cells.push_back(cell);
+    return cells;
   }
 
-  std::vector<Region> regions(const CellSet& places, const CellSet& again) {
-    std::vector<Region> found;
+  std::vector<CellSet> regions(const CellSet& places) {
     const CellSet widened = places.dilated(1);
-    for (const CellSet& cells : widened.components()) {
-      const bool is_known = std::any_of(again.cells().begin(), again.cells().end(),
-                                        [&](const CellSet::Cell& cell) { return cells.contains(cell); });
-      found.push_back({cells, is_known ? Finish::raw : Finish::evened});
-    }
     focus_ = widened.dilated(kFocus);
-    return found;
+    return widened.components();
   }
 
   const FieldGrid& fresh_;
   double depth_;
-  CellSet once_, twice_;  // cells that have been named
+  CellSet named_[kTimes];  // cells that have been named once, twice ...
   std::optional<CellSet> focus_;
   int stray_round_ = 0;
 };
@@ -152,7 +165,7 @@ class MeshUnderRepair {
 
   // Patches for all places at once, then one after the other where they get in each other's way. Returns how many
   // places were replaced.
-  int replace(const std::vector<Region>& places, std::string& why) {
+  int replace(const std::vector<CellSet>& places, std::string& why) {
     const int base = static_cast<int>(mend_.positions.size());
     std::vector<std::optional<MeshPatch>> patches(places.size());
     std::vector<std::string> whys(places.size());
@@ -192,11 +205,24 @@ class MeshUnderRepair {
   }
 
  private:
-  std::optional<MeshPatch> patch_for(const Region& place, std::string& why) const {
-    for (int layers : kGrowths) {
-      if (auto patch = replace_region(fresh_, place.cells.dilated(layers - 1), mend_, place.finish, why)) return patch;
+  // Grows the region where it does not fit, or where the patch intersects something.
+  std::optional<MeshPatch> patch_for(CellSet cells, std::string& why) const {
+    std::optional<MeshPatch> best;
+    std::size_t fewest = 0;
+    Misfit misfit;
+    for (int attempt = 1; attempt <= kAttempts; ++attempt) {
+      auto patch = replace_region(fresh_, cells, mend_, misfit);
+      if (patch && misfit.cells.empty()) return patch;
+      why = misfit.why;
+      if (patch && (!best || misfit.cells.size() < fewest)) {
+        fewest = misfit.cells.size();
+        best = std::move(patch);
+      }
+      const bool all_around = misfit.cells.empty() || attempt % kAllAroundEvery == 0;
+      if (all_around) cells = cells.dilated(1 + attempt / (2 * kAllAroundEvery));
+      add(CellSet(std::move(misfit.cells)).dilated(1).cells(), cells);
     }
-    return std::nullopt;
+    return best;
   }
 
   // Other patches have brought vertices since the mesh had `base` of them.
@@ -294,17 +320,33 @@ class MeshUnderRepair {
   MeshToMend mend_;
 };
 
-// Takes out the components that enclose next to nothing, either way round.
+// Takes out the components that enclose next to nothing, either way round, and the small ones where they are unwanted.
 void sweep(const FieldGrid& fresh, const Particles& particles, const TopologySettings& settings, SurfaceMesh& mesh,
            Projection& projection, TopologyReport& report) {
-  const double least_volume = kDust * std::pow(fresh.grid.spacing(), 3);
+  const double dust = kDust * std::pow(fresh.grid.spacing(), 3);
+  const double least_volume = settings.small_parts == SmallParts::drop ? std::max(dust, settings.smallest_part) : dust;
   const MeshComponents components = mesh_components(mesh.positions, mesh.triangles);
   std::vector<char> is_dust(components.count);
   for (int c = 0; c < components.count; ++c) is_dust[c] = std::abs(components.volumes[c]) < least_volume;
   if (std::find(is_dust.begin(), is_dust.end(), 1) == is_dust.end()) return;
   MeshUnderRepair repair(fresh, mesh, projection);
+  report.dropped += static_cast<int>(std::count(is_dust.begin(), is_dust.end(), 1));
   repair.remove(components, is_dust);
   repair.finish(particles, settings.material, report);
+}
+
+// Makes balls of the same volume around the same centre of the small parts, either way round.
+void round_small_parts(const TopologySettings& settings, SurfaceMesh& mesh, TopologyReport& report) {
+  const MeshComponents components = mesh_components(mesh.positions, mesh.triangles);
+  std::vector<std::vector<int>> vertices(components.count);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    vertices[components.of_vertex[v]].push_back(static_cast<int>(v));
+  std::vector<std::vector<Triangle>> triangles(components.count);
+  for (const Triangle& triangle : mesh.triangles) triangles[components.of_vertex[triangle[0]]].push_back(triangle);
+  for (int c = 0; c < components.count; ++c) {
+    if (!(std::abs(components.volumes[c]) < settings.smallest_part)) continue;
+    report.balls += make_ball(vertices[c], triangles[c], components.volumes[c], mesh.positions);
+  }
 }
 
 }  // namespace
@@ -319,7 +361,7 @@ TopologyReport change_topology(const MetaballField& field, const Particles& part
   report.expected = counts_of(expected.positions, expected.triangles);
   PlacesToMend to_mend(fresh, settings.depth);
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<Region> regions = to_mend.find(mesh, projection);
+    std::vector<CellSet> regions = to_mend.find(mesh, projection, expected);
     report.counts = counts_of(mesh.positions, mesh.triangles);
     if (regions.empty() && !(report.counts == report.expected)) regions = to_mend.find_strays(mesh, expected);
     if (regions.empty()) break;
@@ -334,10 +376,11 @@ TopologyReport change_topology(const MetaballField& field, const Particles& part
     report.regions += replaced;
     repair.finish(particles, settings.material, report);
   }
-  if (report.regions > 0) {
+  if (report.regions > 0 || settings.small_parts == SmallParts::drop) {
     sweep(fresh, particles, settings, mesh, projection, report);
     report.counts = counts_of(mesh.positions, mesh.triangles);
   }
+  if (settings.small_parts == SmallParts::balls) round_small_parts(settings, mesh, report);
   return report;
 }
 

@@ -9,6 +9,7 @@
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/particles.h"
 #include "tracking/topology/material.h"
+#include "tracking/topology/small_parts.h"
 
 namespace flowskin::tracking {
 
@@ -16,6 +17,8 @@ struct TopologySettings {
   double edge_length = 0;  ///< Of fresh surface, and the spacing of the grid on which mesh and field are compared (m).
   double depth = 0;        ///< Disagreements less deep than this are let pass (m).
   bool local = true;       ///< Replace the regions; false: only count them, as stubborn.
+  double smallest_part = 0;                   ///< Components that enclose less, as fluid or as air (m^3), are small.
+  SmallParts small_parts = SmallParts::keep;  ///< What becomes of them.
   MaterialSettings material;
 };
 
@@ -32,9 +35,11 @@ struct TopologyReport {
   int stubborn = 0;        ///< Regions that could not be replaced.
   std::string why;         ///< Why the last of those could not be.
   int born = 0;            ///< Vertices.
+  int dropped = 0;         ///< Components that were taken out because they are small.
+  int balls = 0;           ///< Components that were made balls.
   SurfaceCounts counts;    ///< Of the mesh, in the end.
   SurfaceCounts expected;  ///< Of a fresh extraction.
-  bool changed() const { return regions > 0; }
+  bool changed() const { return regions > 0 || dropped > 0; }
 };
 
 /// Replaces the regions of a mesh where it and the sign of the field disagree (Wojtan et al. 2009; for SPH Yu et al.

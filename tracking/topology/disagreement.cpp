@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tracking/topology/grid_crossings.h"
 
@@ -89,32 +90,71 @@ std::vector<Probe> probe_nodes(const SparseGrid& grid, const std::vector<GridCro
   return probes;
 }
 
+// Distance, to first order, of a place in a cell from where the interpolated values are zero; infinite where all nodes
+// are on one side. Both in cells.
+double distance_in_cell(const SparseGrid& grid, const Cell& cell, const Vec3& place) {
+  double value = 0;
+  Vec3 slope = Vec3::Zero();
+  int inside = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const std::array<int, 3> bit = {corner & 1, (corner >> 1) & 1, corner >> 2};
+    const double at_node = grid.value({cell[0] + bit[0], cell[1] + bit[1], cell[2] + bit[2]});
+    inside += at_node > 0;
+    Vec3 weight;
+    for (int axis = 0; axis < 3; ++axis) weight[axis] = bit[axis] ? place[axis] : 1 - place[axis];
+    value += at_node * weight.prod();
+    for (int axis = 0; axis < 3; ++axis)
+      slope[axis] += (bit[axis] ? at_node : -at_node) * weight[(axis + 1) % 3] * weight[(axis + 2) % 3];
+  }
+  if (inside == 0 || inside == 8) return std::numeric_limits<double>::infinity();
+  return std::abs(value) / slope.norm();
+}
+
 }  // namespace
 
 std::vector<Cell> disagreeing_cells(const MetaballField& field, const SparseGrid& grid, double depth,
-                                    const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
+                                    const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                                    std::vector<Cell>* shallow) {
   std::array<std::vector<GridCrossing>, 3> crossings;
   for (int axis = 0; axis < 3; ++axis) crossings[axis] = grid_crossings(grid, axis, positions, triangles);
 
   std::vector<Probe> probes = probe_nodes(grid, crossings[2]);
   for (int axis = 0; axis < 3; ++axis) probe_edges(crossings[axis], axis, probes);
 
-  std::vector<char> disagrees(probes.size());
+  std::vector<char> disagrees(probes.size()), differs(probes.size());
 #pragma omp parallel for schedule(dynamic, 64)
   for (int p = 0; p < static_cast<int>(probes.size()); ++p) {
     const Probe& probe = probes[p];
     const Vec3 x = grid.position({0, 0, 0}) + grid.spacing() * probe.coordinates;
     Vec3 gradient;
     const double f = field.value(x, gradient);
-    const bool differs = probe.winding != (f > 0 ? 1 : 0);
-    disagrees[p] = differs && (probe.winding < 0 || probe.winding > 1 || std::abs(f) > depth * gradient.norm());
+    differs[p] = probe.winding != (f > 0 ? 1 : 0);
+    disagrees[p] = differs[p] && (probe.winding < 0 || probe.winding > 1 || std::abs(f) > depth * gradient.norm());
   }
   std::vector<Cell> cells;
   for (std::size_t p = 0; p < probes.size(); ++p) {
-    if (!disagrees[p]) continue;
+    if (!disagrees[p] && !(shallow && differs[p])) continue;
     // All cells that it lies in or on.
     const Vec3& x = probes[p].coordinates;
-    add_cells(x.array().ceil() - 1, x.array().floor(), cells);
+    add_cells(x.array().ceil() - 1, x.array().floor(), disagrees[p] ? cells : *shallow);
+  }
+  return cells;
+}
+
+std::vector<Cell> unresolved_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions) {
+  std::vector<char> is_unresolved(positions.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t v = 0; v < std::ssize(is_unresolved); ++v) {
+    const Vec3 x = grid.coordinates(positions[v]);
+    const Vec3 floor = x.array().floor();
+    const Cell cell = {static_cast<int>(floor[0]), static_cast<int>(floor[1]), static_cast<int>(floor[2])};
+    is_unresolved[v] = !(distance_in_cell(grid, cell, x - floor) < reach);
+  }
+  std::vector<Cell> cells;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (!is_unresolved[v]) continue;
+    const Vec3 x = grid.coordinates(positions[v]);
+    add_cells(x, x, cells);
   }
   return cells;
 }

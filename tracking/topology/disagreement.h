@@ -15,9 +15,16 @@ namespace flowskin::tracking {
 /// grid edge: so sheets closer to each other than a cell are seen, too. A place counts only where it is deeper than
 /// `depth` (m) by |f| / |grad f|: triangles cut corners of a curved surface.
 /// @param grid of the field
+/// @param shallow cells with a place that is less deep are added
 /// @pre The mesh is closed.
 std::vector<CellSet::Cell> disagreeing_cells(const MetaballField& field, const SparseGrid& grid, double depth,
-                                             const std::vector<Vec3>& positions,
-                                             const std::vector<Triangle>& triangles);
+                                             const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                                             std::vector<CellSet::Cell>* shallow = nullptr);
+
+/// The cells with vertices that the grid knows nothing of: its values, interpolated in the cell of the vertex, put the
+/// surface farther from there than `reach` (in cells), or into another cell. Films, threads and gaps thinner than a
+/// cell are such places.
+/// @param positions on the surface of the field
+std::vector<CellSet::Cell> unresolved_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions);
 
 }  // namespace flowskin::tracking

@@ -1,6 +1,8 @@
 #include "tracking/topology/improve_patch.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/improvement_limits.h"
@@ -8,11 +10,18 @@
 #include "tracking/mesh/edges_by_length.h"
 #include "tracking/mesh/editable_mesh.h"
 #include "tracking/mesh/keep_vertices.h"
+#include "tracking/mesh/mesh_measures.h"
+#include "tracking/mesh/point_tree.h"
 
 namespace flowskin::tracking {
 namespace {
 
 using namespace improvement;
+
+constexpr double kSameVertex = 0.5;              // edge lengths between an old vertex and the new one in its place
+constexpr double kSameSide = 0.7;                // cosine between their normals
+constexpr double kUpright = 0.5;                 // cosine of the largest turn of a triangle
+constexpr double kLeastAngle = 20 * M_PI / 180;  // of a triangle then
 
 // The patch and the triangles around it, with numbers of their own: old vertices first, then the new ones.
 class LocalMesh {
@@ -48,9 +57,30 @@ class LocalMesh {
     for (const Triangle& triangle : patch.triangles) triangles_.push_back(local(triangle));
   }
 
+  // Vertices of the mesh that the patch would drop, in ascending order.
+  std::vector<int> dropped(const MeshToMend& whole, const MeshPatch& patch) const {
+    std::vector<int> found;
+    for (int t : patch.removed) {
+      for (int vertex : whole.triangles[t]) {
+        if (!std::binary_search(border_and_ring_.begin(), border_and_ring_.end(), vertex)) found.push_back(vertex);
+      }
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+
+  // A new vertex becomes one of the mesh.
+  void make_old(int vertex, int of_mesh) {
+    old_of_new_.resize(positions_.size(), -1);
+    old_of_new_[vertex] = of_mesh;
+  }
+
   int old_count() const { return old_count_; }
   bool is_new(int vertex) const { return vertex >= old_count_; }
   std::vector<Vec3>& positions() { return positions_; }
+  const std::vector<Vec3>& positions() const { return positions_; }
+  const std::vector<Triangle>& triangles() const { return triangles_; }
   std::vector<Vec3>& normals() { return normals_; }
   std::vector<Triangle>& triangles() { return triangles_; }
   MeshTopology topology() const { return build_topology(static_cast<int>(positions_.size()), triangles_); }
@@ -62,16 +92,19 @@ class LocalMesh {
   void hand_over(MeshPatch& patch) const {
     patch.removed.insert(patch.removed.end(), ring_.begin(), ring_.end());
     std::sort(patch.removed.begin(), patch.removed.end());
-    patch.born.assign(positions_.begin() + old_count_, positions_.end());
-    patch.born_normals.assign(normals_.begin() + old_count_, normals_.end());
-    patch.triangles.clear();
-    for (const Triangle& triangle : triangles_) {
-      Triangle global{};
-      for (int i = 0; i < 3; ++i) {
-        global[i] = is_new(triangle[i]) ? mesh_size_ + triangle[i] - old_count_ : border_and_ring_[triangle[i]];
-      }
-      patch.triangles.push_back(global);
+    patch.born.clear();
+    patch.born_normals.clear();
+    std::vector<int> number = border_and_ring_;
+    for (int v = old_count_; v < static_cast<int>(positions_.size()); ++v) {
+      const int old = old_of_new_.empty() ? -1 : old_of_new_[v];
+      number.push_back(old >= 0 ? old : mesh_size_ + static_cast<int>(patch.born.size()));
+      if (old >= 0) continue;
+      patch.born.push_back(positions_[v]);
+      patch.born_normals.push_back(normals_[v]);
     }
+    patch.triangles.clear();
+    for (const Triangle& triangle : triangles_)
+      patch.triangles.push_back({number[triangle[0]], number[triangle[1]], number[triangle[2]]});
   }
 
  private:
@@ -92,7 +125,55 @@ class LocalMesh {
   std::vector<int> ring_;             // old triangles that touch the patch
   std::vector<Vec3> positions_, normals_;
   std::vector<Triangle> triangles_;
+  std::vector<int> old_of_new_;  // the mesh's vertex that each has become, -1: none; empty: none has
 };
+
+// Whether the triangles at a vertex stay well shaped and upright when it moves to x.
+bool may_move(const LocalMesh& mesh, const MeshTopology& topology, int vertex, const Vec3& x, double edge_length) {
+  for (int t : topology.star(vertex)) {
+    const Triangle& triangle = mesh.triangles()[t];
+    std::array<Vec3, 3> after{};
+    for (int i = 0; i < 3; ++i) after[i] = triangle[i] == vertex ? x : mesh.positions()[triangle[i]];
+    const Vec3 before = doubled_area_vector(mesh.positions(), triangle);
+    const Vec3 area = (after[1] - after[0]).cross(after[2] - after[0]);
+    if (!(area.dot(before) > kUpright * area.norm() * before.norm())) return false;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 &a = after[i], &b = after[(i + 1) % 3], &c = after[(i + 2) % 3];
+      const double length = (b - a).norm();
+      if (length < kShortEdge * edge_length || length > kLongEdge * edge_length) return false;
+      if (angle_at(a, b, c) < kLeastAngle) return false;
+    }
+  }
+  return true;
+}
+
+// New vertices that come to lie next to one that the patch would drop, each the other's nearest, move there: so that
+// vertex stays, with its id and all that it carries.
+void keep_old_vertices(const FieldGrid& fresh, const MeshToMend& whole, const MeshPatch& patch, LocalMesh& mesh) {
+  const double edge_length = fresh.grid.spacing();
+  const double tolerance = default_projection(fresh.field.settings()).tolerance;
+  std::vector<int> dropped = mesh.dropped(whole, patch);
+  std::erase_if(dropped, [&](int vertex) {
+    return !(surface_distance(fresh.field, whole.positions[vertex]).distance <= tolerance);
+  });
+  const int first = mesh.old_count(), count = static_cast<int>(mesh.positions().size());
+  if (dropped.empty() || first == count) return;
+  std::vector<Vec3> old_places;
+  for (int vertex : dropped) old_places.push_back(whole.positions[vertex]);
+  const std::vector<Vec3> new_places(mesh.positions().begin() + first, mesh.positions().end());
+  const std::vector<int> old_of = nearest_points(old_places, new_places, kSameVertex * edge_length);
+  const std::vector<int> new_of = nearest_points(new_places, old_places, kSameVertex * edge_length);
+  const MeshTopology topology = mesh.topology();
+  for (int v = first; v < count; ++v) {
+    const int old = old_of[v - first];
+    if (old < 0 || new_of[old] != v - first) continue;
+    const int vertex = dropped[old];
+    if (!(whole.normals[vertex].dot(mesh.normals()[v]) > kSameSide)) continue;
+    if (!may_move(mesh, topology, v, whole.positions[vertex], edge_length)) continue;
+    mesh.positions()[v] = whole.positions[vertex];
+    mesh.make_old(v, vertex);
+  }
+}
 
 void collapse_short_edges(double edge_length, LocalMesh& mesh) {
   const MeshTopology topology = mesh.topology();
@@ -138,7 +219,8 @@ void improve_patch(const FieldGrid& fresh, const MeshToMend& whole, const std::v
     project_point(fresh.field, projection, mesh.positions()[v], point);
     mesh.normals()[v] = point.normal;
   }
-  for (int round = 0; round < (finish == Finish::evened ? kRounds : 0); ++round) {
+  const int rounds = finish == Finish::evened ? kRounds : finish == Finish::once ? 1 : 0;
+  for (int round = 0; round < rounds; ++round) {
     collapse_short_edges(edge_length, mesh);
     flip_towards_delaunay(mesh);
     std::vector<int> moving;
@@ -147,8 +229,11 @@ void improve_patch(const FieldGrid& fresh, const MeshToMend& whole, const std::v
     relax(fresh.field, projection, mesh.topology(), mesh.triangles(), kRelaxationsPerRound, moving, mesh.positions(),
           mesh.normals(), Ridges::kept);
   }
-  collapse_short_edges(edge_length, mesh);
-  flip_towards_delaunay(mesh);
+  if (finish != Finish::raw) {
+    collapse_short_edges(edge_length, mesh);
+    flip_towards_delaunay(mesh);
+  }
+  if (finish != Finish::raw) keep_old_vertices(fresh, whole, patch, mesh);
   mesh.hand_over(patch);
 }
 

@@ -5,10 +5,18 @@
 
 namespace flowskin::tracking {
 
+/// What is done to the triangles of marching cubes, from much to nothing.
+enum class Finish {
+  evened,  ///< Short edges are collapsed, edges flipped towards Delaunay, and vertices evened out, in a few rounds.
+  once,    ///< One such round.
+  merged,  ///< Collapses and flips only.
+  raw,     ///< Nothing.
+};
+
 /// Collapses short edges into the older vertex, flips towards Delaunay and evens out, as improve_surface does; the only
 /// vertices that move or vanish are the patch's new ones. Triangles of the mesh next to the patch may take part in
-/// flips: they become triangles of the patch then.
-/// With Finish::raw nothing is evened out.
+/// flips: they become triangles of the patch then. Vertices of the hole that fit into the patch where they are take the
+/// place of new ones, and so stay in the mesh.
 /// @param kept triangles of the mesh near the patch that stay
 void improve_patch(const FieldGrid& fresh, const MeshToMend& whole, const std::vector<int>& kept, Finish finish,
                    MeshPatch& patch);

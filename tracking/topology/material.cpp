@@ -15,21 +15,6 @@ constexpr double kSameSide = 0.3;         // cosine between a new vertex's norma
 constexpr double kForeign = 2.0;          // particles whose rest positions are this many radii from the nearest's
 constexpr double kRegularization = 1e-6;  // of the moment matrix; keeps planar neighbourhoods solvable
 
-// Nearest point of `targets` for each query, -1 where none is within reach.
-std::vector<int> nearest(const std::vector<Vec3>& targets, const std::vector<Vec3>& queries, double reach) {
-  std::vector<int> result(queries.size(), -1);
-  if (targets.empty()) return result;
-  const PointCloud cloud{targets};
-  const PointTree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
-#pragma omp parallel for schedule(static)
-  for (int q = 0; q < static_cast<int>(queries.size()); ++q) {
-    int index = -1;
-    double squared = 0;
-    if (tree.knnSearch(queries[q].data(), 1, &index, &squared) == 1 && squared <= reach * reach) result[q] = index;
-  }
-  return result;
-}
-
 // Neighbours of x, the nearest first is `nearest`; the support grows until it holds a particle.
 // Only the first `count` particles of the field count.
 int find_neighbors(const MetaballField& field, int count, const Vec3& x, double& radius, std::vector<int>& found) {
@@ -160,8 +145,8 @@ SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& g
       layer[v] = material.place(mesh.positions[v], normals[v], old_mesh.layers[k], beneath);
   }
 
-  const std::vector<int> old_of_new = nearest(old_mesh.positions, mesh.positions, settings.same_vertex);
-  const std::vector<int> new_of_old = nearest(mesh.positions, old_mesh.positions, settings.same_vertex);
+  const std::vector<int> old_of_new = nearest_points(old_mesh.positions, mesh.positions, settings.same_vertex);
+  const std::vector<int> new_of_old = nearest_points(mesh.positions, old_mesh.positions, settings.same_vertex);
   for (int v = 0; v < count; ++v) {
     const int old = old_of_new[v];
     mesh.ids[v] = old >= 0 && new_of_old[old] == v ? old_mesh.ids[old] : mesh.next_id++;

@@ -1,12 +1,16 @@
 #include "tracking/topology/replace_region.h"
 
 #include <algorithm>
+#include <deque>
+#include <initializer_list>
 #include <map>
 #include <utility>
 
 #include "tracking/extraction/marching_cubes.h"
+#include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/topology/improve_patch.h"
+#include "tracking/topology/patch_crossings.h"
 #include "tracking/topology/patch_mesh.h"
 
 namespace flowskin::tracking {
@@ -16,6 +20,7 @@ constexpr int kSurroundings = 3;   // layers of cells around the hole that are l
 constexpr int kMargin = 3;         // layers of cells by which the fresh surface overlaps the rest of the mesh
 constexpr double kReach = 0.75;    // between the two surfaces at the border, in cells
 constexpr double kSameSide = 0.5;  // cosine between normals of one sheet
+constexpr double kNear = 0.4;      // cells that evening may carry the surface away from where marching cubes put it
 constexpr int kPinchRounds = 30;
 
 using Side = std::pair<int, int>;  // of a triangle, from one corner to the next
@@ -40,9 +45,10 @@ class Hole {
   }
 
   // Widens the hole until its border is made of simple loops. False where that leads out of the surroundings.
-  bool smooth_border(const MeshToMend& mesh) {
+  bool smooth_border(const MeshToMend& mesh, Misfit& misfit) {
+    misfit.why = "the hole has no simple border";
     for (int round = 0; round < kPinchRounds; ++round) {
-      if (!find_border(mesh)) return false;
+      if (!find_border(mesh, misfit)) return false;
       std::map<int, int> starts;
       for (const Side& s : border_) ++starts[s.first];
       bool changed = remove_tongues(mesh);
@@ -51,8 +57,13 @@ class Hole {
         for (int n : stars_[vertex]) is_removed_[n] = 1;
         changed = true;
       }
-      if (!changed) return true;
+      if (!changed) {
+        misfit = {};
+        return true;
+      }
     }
+    for (const Side& s : border_)
+      add_cells(mesh.boxes[near_[owner_.at(s)]].low, mesh.boxes[near_[owner_.at(s)]].high, misfit.cells);
     return false;
   }
 
@@ -72,14 +83,17 @@ class Hole {
     return found;
   }
 
-  bool find_border(const MeshToMend& mesh) {
+  bool find_border(const MeshToMend& mesh, Misfit& misfit) {
     border_.clear();
     for (std::size_t n = 0; n < near_.size(); ++n) {
       if (!is_removed_[n]) continue;
       for (int corner = 0; corner < 3; ++corner) {
         const Side s = side(mesh.triangles[near_[n]], corner);
         const auto other = owner_.find({s.second, s.first});
-        if (other == owner_.end()) return false;
+        if (other == owner_.end()) {
+          add_cells(mesh.boxes[near_[n]].low, mesh.boxes[near_[n]].high, misfit.cells);
+          return false;
+        }
         if (!is_removed_[other->second]) border_.push_back(s);
       }
     }
@@ -117,42 +131,41 @@ class Filling {
   Filling(const FieldGrid& fresh, const CellSet& cells, SurfaceGeometry surface)
       : fresh_(fresh), cells_(cells), patch_(std::move(surface.positions), std::move(surface.triangles)) {}
 
-  bool fit(const MeshToMend& mesh, const std::vector<Side>& border, std::string& why) {
+  // False where some of the border does not fit; `misfit` tells all such places.
+  bool fit(const MeshToMend& mesh, const std::vector<Side>& border, Misfit& misfit) {
     for (const Side& s : border) {
       if (vertex_in_patch_.count(s.first)) continue;
       const int vertex = patch_.insert(mesh.positions[s.first], mesh.normals[s.first], kReach * fresh_.grid.spacing());
-      if (vertex < 0) {
-        why = "the fresh surface does not reach the border of the hole";
-        return false;
+      if (vertex >= 0) {
+        vertex_in_patch_[s.first] = vertex;
+      } else {
+        refuse("the fresh surface does not reach the border of the hole", {mesh.positions[s.first]}, misfit);
       }
-      vertex_in_patch_[s.first] = vertex;
     }
     for (const Side& s : border) {
+      const auto from = vertex_in_patch_.find(s.first), to = vertex_in_patch_.find(s.second);
+      if (from == vertex_in_patch_.end() || to == vertex_in_patch_.end()) continue;
       const Vec3 normal = mesh.normals[s.first] + mesh.normals[s.second];
-      if (!patch_.connect(vertex_in_patch_.at(s.first), vertex_in_patch_.at(s.second), normal)) {
-        why = "the border of the hole cannot be drawn on the fresh surface";
-        return false;
-      }
+      if (!patch_.connect(from->second, to->second, normal))
+        refuse("the border of the hole cannot be drawn on the fresh surface",
+               {mesh.positions[s.first], mesh.positions[s.second]}, misfit);
     }
-    return true;
+    return misfit.cells.empty();
   }
 
   // Marks the triangles within the border. False where the border does not part inside and outside.
-  bool fill(const MeshToMend& mesh, const std::vector<Side>& border, const std::vector<int>& kept, std::string& why) {
+  bool fill(const MeshToMend& mesh, const std::vector<Side>& border, const std::vector<int>& kept, Misfit& misfit) {
     std::vector<int> open;
     is_inside_.assign(patch_.triangles().size(), 0);
     for (const Side& s : border)
       open.push_back(patch_.triangle_at(vertex_in_patch_[s.first], vertex_in_patch_[s.second]));
-    if (!flood(open)) {
-      why = "the fresh surface leaves the region";
-      return false;
-    }
+    if (!flood({open.begin(), open.end()}, misfit)) return false;
     for (const Side& s : border) {
       if (!is_inside_[patch_.triangle_at(vertex_in_patch_[s.second], vertex_in_patch_[s.first])]) continue;
-      why = "the border of the hole does not part inside and outside";
-      return false;
+      refuse("the border of the hole does not part inside and outside",
+             {mesh.positions[s.first], mesh.positions[s.second]}, misfit);
     }
-    return add_new_parts(mesh, kept, why);
+    return misfit.cells.empty() && add_new_parts(mesh, kept, misfit);
   }
 
   // The triangles within, with vertices of the mesh by their numbers, new ones from `first_new` on.
@@ -174,17 +187,31 @@ class Filling {
   }
 
  private:
+  void refuse(const char* why, std::initializer_list<Vec3> places, Misfit& misfit) const {
+    misfit.why = why;
+    for (const Vec3& x : places) add_cells(fresh_.grid.coordinates(x), fresh_.grid.coordinates(x), misfit.cells);
+  }
+
   // Goes from these triangles over all edges but the fixed ones. False where it meets the end of the surface.
-  bool flood(std::vector<int> open) {
+  bool flood(std::deque<int> open, Misfit& misfit) {
+    const CellSet around = cells_.dilated(1);
+    int leak = -1;  // the first triangle on the way out
     for (int t : open) is_inside_[t] = 1;
     while (!open.empty()) {
-      const Triangle triangle = patch_.triangles()[open.back()];
-      open.pop_back();
+      const int t = open.front();
+      const Triangle triangle = patch_.triangles()[t];
+      open.pop_front();
+      const Box box = box_of(fresh_.grid, triangle, patch_.positions());
+      if (leak < 0 && !meets(around, box.low, box.high)) leak = t;
       for (int corner = 0; corner < 3; ++corner) {
         const auto [a, b] = side(triangle, corner);
         if (patch_.is_fixed(a, b)) continue;
         const int next = patch_.triangle_at(b, a);
-        if (next < 0) return false;
+        if (next < 0) {
+          refuse("the fresh surface leaves the region",
+                 {patch_.positions()[patch_.triangles()[leak < 0 ? t : leak][0]]}, misfit);
+          return false;
+        }
         if (!std::exchange(is_inside_[next], 1)) open.push_back(next);
       }
     }
@@ -197,7 +224,7 @@ class Filling {
   }
 
   // Closed parts of the fresh surface that lie in the region and have no counterpart in the mesh.
-  bool add_new_parts(const MeshToMend& mesh, const std::vector<int>& kept, std::string& why) {
+  bool add_new_parts(const MeshToMend& mesh, const std::vector<int>& kept, Misfit& misfit) {
     const MeshComponents parts = mesh_components(patch_.positions(), patch_.triangles());
     std::vector<char> candidate(parts.count, 0);
     for (std::size_t t = 0; t < patch_.triangles().size(); ++t) {
@@ -216,12 +243,11 @@ class Filling {
     for (std::size_t t = 0; t < patch_.triangles().size(); ++t) {
       if (!candidate[parts.of_vertex[patch_.triangles()[t][0]]]) continue;
       if (has_counterpart(mesh, kept, static_cast<int>(t))) {
-        why = "a small part lies half in the region";
-        return false;
+        refuse("a small part lies half in the region", {patch_.positions()[patch_.triangles()[t][0]]}, misfit);
       }
       is_inside_[t] = 1;
     }
-    return true;
+    return misfit.cells.empty();
   }
 
   // Whether a triangle that stays lies next to this one, on the same side.
@@ -247,7 +273,8 @@ class Filling {
 };
 
 // The rest of the mesh may already have an edge that the filling has, too.
-bool fits_the_rest(const MeshToMend& mesh, const std::vector<int>& kept, const MeshPatch& patch) {
+bool fits_the_rest(const FieldGrid& fresh, const MeshToMend& mesh, const std::vector<int>& kept, const MeshPatch& patch,
+                   Misfit& misfit) {
   std::vector<Side> sides;
   for (int t : kept) {
     for (int corner = 0; corner < 3; ++corner) sides.push_back(side(mesh.triangles[t], corner));
@@ -256,7 +283,40 @@ bool fits_the_rest(const MeshToMend& mesh, const std::vector<int>& kept, const M
     for (int corner = 0; corner < 3; ++corner) sides.push_back(side(triangle, corner));
   }
   std::sort(sides.begin(), sides.end());
-  return std::adjacent_find(sides.begin(), sides.end()) == sides.end();
+  const auto found = std::adjacent_find(sides.begin(), sides.end());
+  if (found == sides.end()) return true;
+  misfit.why = "the fresh surface has an edge that the mesh has, too";
+  for (int vertex : {found->first, found->second}) {
+    const Vec3 x = fresh.grid.coordinates(mesh.positions[vertex]);
+    add_cells(x, x, misfit.cells);
+  }
+  return false;
+}
+
+// Whether an evened patch is still where marching cubes put it: a vertex of either is near the other.
+bool stays_near(const MeshToMend& mesh, const MeshPatch& raw, const MeshPatch& evened, double reach) {
+  const SurfaceGeometry before = geometry_of(mesh, raw), after = geometry_of(mesh, evened);
+  const auto reaches = [&](const std::vector<Vec3>& born, const SurfaceGeometry& other) {
+    const ClosestPointTree tree(other.positions, other.triangles);
+    return std::all_of(born.begin(), born.end(), [&](const Vec3& x) { return tree.distance(x, reach) <= reach; });
+  };
+  return reaches(raw.born, after) && reaches(evened.born, before);
+}
+
+// The most evened of the patches that intersect nothing and cut no feature off, else the raw one.
+MeshPatch improved(const FieldGrid& fresh, const MeshToMend& mesh, const std::vector<int>& kept, const MeshPatch& patch,
+                   Misfit& misfit) {
+  const PatchCrossings crossings(fresh.grid, mesh, kept);
+  MeshPatch best;
+  for (const Finish finish : {Finish::evened, Finish::once, Finish::merged, Finish::raw}) {
+    best = patch;
+    improve_patch(fresh, mesh, kept, finish, best);
+    if (finish != Finish::raw && !stays_near(mesh, patch, best, kNear * fresh.grid.spacing())) continue;
+    misfit.cells = crossings.cells(best);
+    if (misfit.cells.empty()) return best;
+  }
+  misfit.why = "the fresh surface passes through the rest of the mesh";
+  return best;
 }
 
 }  // namespace
@@ -267,26 +327,21 @@ Box box_of(const SparseGrid& grid, const Triangle& triangle, const std::vector<V
 }
 
 std::optional<MeshPatch> replace_region(const FieldGrid& fresh, const CellSet& cells, const MeshToMend& mesh,
-                                        Finish finish, std::string& why) {
+                                        Misfit& misfit) {
+  misfit = {};
   Hole hole(cells, mesh);
-  if (!hole.smooth_border(mesh)) {
-    why = "the hole has no simple border";
-    return std::nullopt;
-  }
+  if (!hole.smooth_border(mesh, misfit)) return std::nullopt;
   const auto value = [&](const Vec3& x) { return fresh.field.value(x); };
   Filling filling(fresh, cells, march(fresh.grid, cells.dilated(kMargin), value));
   const std::vector<int> kept = hole.kept();
-  if (!filling.fit(mesh, hole.border(), why) || !filling.fill(mesh, hole.border(), kept, why)) return std::nullopt;
+  if (!filling.fit(mesh, hole.border(), misfit) || !filling.fill(mesh, hole.border(), kept, misfit))
+    return std::nullopt;
 
   MeshPatch patch;
   patch.removed = hole.removed();
   filling.collect(static_cast<int>(mesh.positions.size()), patch);
-  if (!fits_the_rest(mesh, kept, patch)) {
-    why = "the fresh surface has an edge that the mesh has, too";
-    return std::nullopt;
-  }
-  improve_patch(fresh, mesh, kept, finish, patch);
-  return patch;
+  if (!fits_the_rest(fresh, mesh, kept, patch, misfit)) return std::nullopt;
+  return improved(fresh, mesh, kept, patch, misfit);
 }
 
 }  // namespace flowskin::tracking

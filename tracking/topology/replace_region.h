@@ -37,16 +37,21 @@ struct MeshToMend {
   std::vector<char> alive;  ///< One a triangle; 0: removed.
 };
 
-/// What is done to the triangles of marching cubes.
-enum class Finish { evened, raw };
+/// Why a region cannot be replaced as it is.
+struct Misfit {
+  std::string why;
+  std::vector<CellSet::Cell> cells;  ///< Where it does not fit; none: somewhere.
+};
 
 /// Cuts the triangles that meet `cells` out of a mesh, together with those whose absence would leave the border
 /// pinched; marching cubes fills the hole within the same cells, and the two are stitched along the border of the hole:
 /// its vertices are inserted into the fresh surface, its edges made there by flips, and what lies beyond them is cut
-/// off. New vertices are then evened out, if wanted. Vertices and triangles of the mesh outside the hole stay as they
-/// are, but for edges at the border of the hole, which may be flipped.
-/// @return nothing where the two surfaces do not fit together at the border; then more cells may help. `why` tells.
+/// off. New vertices are then evened out as far as no triangles intersect because of it. Vertices and triangles of the
+/// mesh outside the hole stay as they are, but for edges at the border of the hole, which may be flipped.
+/// @param misfit where the two surfaces do not fit together at the border, or where triangles of the patch intersect
+/// others even though they are not evened out; then more cells there may help. Empty where all is well.
+/// @return nothing where they do not fit together; a patch that intersects something is returned.
 std::optional<MeshPatch> replace_region(const FieldGrid& fresh, const CellSet& cells, const MeshToMend& mesh,
-                                        Finish finish, std::string& why);
+                                        Misfit& misfit);
 
 }  // namespace flowskin::tracking

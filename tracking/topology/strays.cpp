@@ -1,5 +1,6 @@
 #include "tracking/topology/strays.h"
 
+#include <cmath>
 #include <limits>
 
 #include "tracking/mesh/closest_point.h"
@@ -10,25 +11,51 @@ namespace {
 
 constexpr double kSameSide = 0.5;
 
+std::vector<Triangle> triangles_in(const CellSet& cells, const SparseGrid& grid, const std::vector<Vec3>& positions,
+                                   const std::vector<Triangle>& triangles) {
+  std::vector<Triangle> found;
+  for (const Triangle& triangle : triangles) {
+    const Vec3 x = grid.coordinates(positions[triangle[0]]);
+    if (meets(cells, x, x)) found.push_back(triangle);
+  }
+  return found;
+}
+
 }  // namespace
 
 Strays::Strays(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
-               const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh) {
-  measure(grid, farthest, positions, triangles, fresh.positions, fresh.triangles);
-  measure(grid, farthest, fresh.positions, fresh.triangles, positions, triangles);
+               const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh, const CellSet* where) {
+  if (where && where->empty()) return;
+  if (!where) {
+    measure(grid, farthest, positions, triangles, fresh.positions, fresh.triangles, nullptr);
+    measure(grid, farthest, fresh.positions, fresh.triangles, positions, triangles, nullptr);
+    return;
+  }
+  // Whatever may be near enough or bear on the normals.
+  const CellSet around = where->dilated(1 + static_cast<int>(std::ceil(farthest / grid.spacing())));
+  const std::vector<Triangle> near = triangles_in(around, grid, positions, triangles);
+  const std::vector<Triangle> near_fresh = triangles_in(around, grid, fresh.positions, fresh.triangles);
+  measure(grid, farthest, positions, near, fresh.positions, near_fresh, where);
+  measure(grid, farthest, fresh.positions, near_fresh, positions, near, where);
 }
 
 void Strays::measure(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
                      const std::vector<Triangle>& triangles, const std::vector<Vec3>& other_positions,
-                     const std::vector<Triangle>& other_triangles) {
+                     const std::vector<Triangle>& other_triangles, const CellSet* where) {
+  std::vector<int> vertices;
+  for (int v = 0; v < static_cast<int>(positions.size()); ++v) {
+    const Vec3 x = grid.coordinates(positions[v]);
+    if (!where || meets(*where, x, x)) vertices.push_back(v);
+  }
   const ClosestPointTree other(other_positions, other_triangles);
   const std::vector<Vec3> normals = vertex_normals(positions, triangles);
   const std::size_t first = places_.size();
-  places_.resize(first + positions.size());
+  places_.resize(first + vertices.size());
 #pragma omp parallel for schedule(dynamic, 256)
-  for (int v = 0; v < static_cast<int>(positions.size()); ++v) {
+  for (int i = 0; i < static_cast<int>(vertices.size()); ++i) {
+    const int v = vertices[i];
     const MeshPoint point = other.closest(positions[v], farthest, normals[v], kSameSide);
-    places_[first + v] = {grid.coordinates(positions[v]),
+    places_[first + i] = {grid.coordinates(positions[v]),
                           point.triangle < 0 ? std::numeric_limits<double>::infinity() : point.distance};
   }
 }

@@ -13,8 +13,9 @@ namespace flowskin::tracking {
 class Strays {
  public:
   /// @param farthest distances are measured up to here (m)
+  /// @param where only the vertices in these cells are looked at; null: all
   Strays(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
-         const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh);
+         const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh, const CellSet* where = nullptr);
   /// Cells with a vertex that is so far or farther. @pre reach <= farthest
   std::vector<CellSet::Cell> farther_than(double reach) const;
 
@@ -25,7 +26,7 @@ class Strays {
   };
   void measure(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
                const std::vector<Triangle>& triangles, const std::vector<Vec3>& other_positions,
-               const std::vector<Triangle>& other_triangles);
+               const std::vector<Triangle>& other_triangles, const CellSet* where);
 
   std::vector<Place> places_;
 };
