@@ -9,6 +9,7 @@
 
 #include "scenes/io/ply_reader.h"
 #include "tests/tools/io_fixture.h"
+#include "tests/tracking/mesh_test_shapes.h"
 #include "tools/errors.h"
 #include "tools/io/surface_writers.h"
 
@@ -31,12 +32,7 @@ tracking::SurfaceMesh sheared_cube(int n, double shear) {
           mesh.positions.push_back(x + Vec3(shear * x.y(), 0, 0));
           mesh.ids.push_back(mesh.next_id++);
         }
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-          const int a = first + i * (n + 1) + j, b = a + n + 1;
-          mesh.triangles.push_back({a, b, b + 1});
-          mesh.triangles.push_back({a, b + 1, a + 1});
-        }
+      tracking::test::add_grid_triangles(first, n, mesh.triangles);
     }
   return mesh;
 }

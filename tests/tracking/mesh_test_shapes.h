@@ -27,6 +27,18 @@ inline SurfaceGeometry tetrahedron() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
+/// Adds the triangles of a grid of n x n squares whose (n + 1) x (n + 1) vertices, row by row, begin at `first`. They
+/// look along (from row to row) x (along the row).
+inline void add_grid_triangles(int first, int n, std::vector<Triangle>& triangles) {
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const int a = first + i * (n + 1) + j, b = a + n + 1;
+      triangles.push_back({a, b, b + 1});
+      triangles.push_back({a, b + 1, a + 1});
+    }
+  }
+}
+
 /// Two surfaces side by side in one.
 inline SurfaceGeometry both(SurfaceGeometry first, const SurfaceGeometry& second) {
   const int offset = static_cast<int>(first.positions.size());

@@ -214,13 +214,7 @@ TEST(SelfIntersections, SheetsThatNearlyTouchDoNotMeet) {
           surface.positions.emplace_back(x, y, 0.3 * x + 0.7 * y + layer * distance);
         }
       }
-      for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < n; ++j) {
-          const int a = first + i * (n + 1) + j, b = a + n + 1;
-          surface.triangles.push_back({a, b, b + 1});
-          surface.triangles.push_back({a, b + 1, a + 1});
-        }
-      }
+      test::add_grid_triangles(first, n, surface.triangles);
     }
     return surface;
   };

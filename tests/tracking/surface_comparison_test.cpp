@@ -39,13 +39,7 @@ SurfaceGeometry square(double height, int n) {
   for (int i = 0; i <= n; ++i) {
     for (int j = 0; j <= n; ++j) surface.positions.emplace_back(double(i) / n, double(j) / n, height);
   }
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      const int a = i * (n + 1) + j, b = a + n + 1;
-      surface.triangles.push_back({a, b, b + 1});
-      surface.triangles.push_back({a, b + 1, a + 1});
-    }
-  }
+  test::add_grid_triangles(0, n, surface.triangles);
   return surface;
 }
 

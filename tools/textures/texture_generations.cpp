@@ -42,24 +42,30 @@ void TextureGenerations::carry(tracking::Particles& particles) {
 void TextureGenerations::update(tracking::Tracker& tracker, const tracking::Particles& particles, double duration) {
   const double most = duration / kFadeTime;
   const tracking::SurfaceMesh& mesh = tracker.mesh();
+  if (texture_.when_stretched == "fade") {
+    overstretched_ = fade(tracker, particles, most);
+    return;
+  }
   if (texture_.when_stretched == "solid")
     weights_.follow(mesh, stretch_blend(mesh, mesh.rest_positions, texture_.stretch_limit), most);
-  if (texture_.when_stretched == "fade") fade(tracker, particles, most);
-  overstretched_ = measure(tracker.mesh());
+  overstretched_ = measure(mesh);
 }
 
-void TextureGenerations::fade(tracking::Tracker& tracker, const tracking::Particles& particles, double most) {
+double TextureGenerations::fade(tracking::Tracker& tracker, const tracking::Particles& particles, double most) {
   const tracking::SurfaceMesh& mesh = tracker.mesh();
   if (!has_newer()) {
     weights_.reset(mesh);
-    if (overstretched_share(mesh, older(mesh), texture_.stretch_limit) > kBeginShare) begin(tracker, particles);
-    return;
+    const double share = measure(mesh);
+    if (share > kBeginShare) begin(tracker, particles);
+    return share;  // the newer one does not show yet
   }
   const std::vector<double> targets = taking_over_ ? std::vector<double>(mesh.ids.size(), 1.0)
                                                    : stretch_blend(mesh, older(mesh), texture_.stretch_limit);
   weights_.follow(mesh, targets, most);
-  if (measure(mesh) > kEndShare) taking_over_ = true;
+  const double share = measure(mesh);
+  if (share > kEndShare) taking_over_ = true;
   if (taking_over_ && all_one(weights_.weights())) promote(tracker);
+  return share;  // what shows stays the same
 }
 
 void TextureGenerations::begin(tracking::Tracker& tracker, const tracking::Particles& particles) {

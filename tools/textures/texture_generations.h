@@ -56,7 +56,8 @@ class TextureGenerations {
     }
   };
 
-  void fade(tracking::Tracker& tracker, const tracking::Particles& particles, double most);
+  /// Returns the overstretched share, once the newer generation shows as far as it should.
+  double fade(tracking::Tracker& tracker, const tracking::Particles& particles, double most);
   void begin(tracking::Tracker& tracker, const tracking::Particles& particles);
   void promote(tracking::Tracker& tracker);
   bool has_newer() const { return layers_.size() > (older_is_rest_ ? 0U : 1U); }

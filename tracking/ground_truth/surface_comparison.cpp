@@ -22,9 +22,8 @@ std::vector<int> euler_of_components(int vertex_count, const std::vector<Triangl
 }
 
 // The triangles of all but the small components.
-std::vector<Triangle> large_parts(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+std::vector<Triangle> large_parts(const std::vector<Triangle>& triangles, const MeshComponents& components,
                                   double small_volume) {
-  const MeshComponents components = mesh_components(positions, triangles);
   std::vector<Triangle> large;
   for (const Triangle& triangle : triangles) {
     if (std::abs(components.volumes[components.of_vertex[triangle[0]]]) >= small_volume) large.push_back(triangle);
@@ -32,11 +31,8 @@ std::vector<Triangle> large_parts(const std::vector<Vec3>& positions, const std:
   return large;
 }
 
-}  // namespace
-
-SurfaceShape surface_shape(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                           double small_volume) {
-  const MeshComponents components = mesh_components(positions, triangles);
+SurfaceShape shape_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                      const MeshComponents& components, double small_volume) {
   const std::vector<int> euler = euler_of_components(static_cast<int>(positions.size()), triangles, components);
   SurfaceShape shape;
   shape.components = components.count;
@@ -45,11 +41,18 @@ SurfaceShape surface_shape(const std::vector<Vec3>& positions, const std::vector
     shape.euler += euler[component];
     const double size = std::abs(components.volumes[component]);
     shape.borderline += size > 0.5 * small_volume && size < 2 * small_volume;
-    if (std::abs(components.volumes[component]) >= small_volume) continue;
+    if (size >= small_volume) continue;
     ++shape.small_components;
     shape.small_euler += euler[component];
   }
   return shape;
+}
+
+}  // namespace
+
+SurfaceShape surface_shape(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                           double small_volume) {
+  return shape_of(positions, triangles, mesh_components(positions, triangles), small_volume);
 }
 
 double SurfaceComparison::volume_error() const {
@@ -58,12 +61,14 @@ double SurfaceComparison::volume_error() const {
 
 SurfaceComparison compare_surfaces(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                    const SurfaceGeometry& fresh, double small_volume) {
+  const MeshComponents parts = mesh_components(positions, triangles);
+  const MeshComponents fresh_parts = mesh_components(fresh.positions, fresh.triangles);
   SurfaceComparison comparison;
-  comparison.mesh = surface_shape(positions, triangles, small_volume);
-  comparison.fresh = surface_shape(fresh.positions, fresh.triangles, small_volume);
+  comparison.mesh = shape_of(positions, triangles, parts, small_volume);
+  comparison.fresh = shape_of(fresh.positions, fresh.triangles, fresh_parts, small_volume);
   comparison.hausdorff = std::max(
-      one_sided_distance(positions, large_parts(positions, triangles, small_volume), fresh.positions, fresh.triangles),
-      one_sided_distance(fresh.positions, large_parts(fresh.positions, fresh.triangles, small_volume), positions,
+      one_sided_distance(positions, large_parts(triangles, parts, small_volume), fresh.positions, fresh.triangles),
+      one_sided_distance(fresh.positions, large_parts(fresh.triangles, fresh_parts, small_volume), positions,
                          triangles));
   return comparison;
 }
