@@ -25,7 +25,8 @@ constexpr double kDefaultEdgeInSpacings = 0.75;
 constexpr int kMostSubsteps = 1000;
 constexpr double kLongestJump = 4;  // of a particle between two states, in effective radii
 constexpr int kRemeshingPasses = 3;
-constexpr int kFewIn = 50;                  // one operation in so many vertices is few: another pass is not worth it
+constexpr double kTorn = 3;  // times its length: the ends of an edge that were farther apart at rest are of two bodies
+constexpr int kFewIn = 50;   // one operation in so many vertices is few: another pass is not worth it
 constexpr double kDisagreementDepth = 0.3;  // of an edge length
 constexpr double kFarReach = 2;             // of old material where particles know none, in effective radii
 
@@ -272,6 +273,7 @@ class TrackerImpl {
     RemeshSettings limits;
     limits.edge_length = settings_.edge_length;
     limits.curvature = settings_.curvature_edges;
+    limits.torn = kTorn;
     const auto few = static_cast<int>(mesh_.positions.size()) / kFewIn;
     for (int pass = 0; pass < kRemeshingPasses; ++pass) {
       const RemeshReport done = remesh(*field_, limits, mesh_);

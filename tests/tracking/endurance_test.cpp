@@ -37,6 +37,10 @@ TEST(Endurance, ABodyTurnedTenTimesKeepsItsRestPositions) {
   }
   TrackerSettings settings = usual_settings();
   settings.max_motion = 0.5;
+  // The midpoint rule turns too far, by a sixth of the cube of each step's angle.
+  settings.integrator = Integrator::rk4;
+  // Constant springs, as in the paper, let a mesh swim slowly even on a body at rest: docs/fairing.md.
+  settings.variable_springs = true;
   const Vec3 spin(0.3, 1.1, -0.4);
   const double turn = 2 * std::numbers::pi / spin.norm();
   constexpr int kTurns = 10, kStates = 12;
@@ -69,6 +73,12 @@ TEST(Endurance, ALinearAttributeSurvivesAHundredRoundsOfRandomRemeshing) {
   const SurfaceGeometry box = test::welded_box(6);
   SurfaceMesh mesh;
   mesh.positions = box.positions;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> shift(-0.3, 0.3), target(0.6, 1.8), slack(0, 0.5);
+  for (Vec3& x : mesh.positions) {
+    // Each face stays flat, and the edges between them straight.
+    for (double& coordinate : x) coordinate += coordinate > 0 && coordinate < 6 ? shift(random) : 0;
+  }
   mesh.triangles = box.triangles;
   mesh.layers.emplace_back();
   for (const Vec3& x : mesh.positions) {
@@ -77,12 +87,11 @@ TEST(Endurance, ALinearAttributeSurvivesAHundredRoundsOfRandomRemeshing) {
     mesh.velocities.push_back(attribute(-x));
     mesh.ids.push_back(mesh.next_id++);
   }
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> target(0.6, 1.8);
   RemeshReport sum;
   for (int round = 0; round < 100; ++round) {
     RemeshSettings settings;
     settings.edge_length = target(random);
+    settings.delaunay_slack = slack(random);
     const RemeshReport done = remesh([](std::vector<Vec3>&) {}, settings, mesh);
     sum.splits += done.splits, sum.collapses += done.collapses, sum.flips += done.flips;
   }
@@ -139,11 +148,9 @@ void expect_survived(const Tracker& tracker, const Particles& particles) {
 
 TEST(Endurance, MissingFramesAreSurvived) {
   Tracker tracker(usual_settings(), bar_at(0));
-  int regions = 0;
   for (const double time : {0.1, 0.2, 1.4, 1.5, 3.5, 3.6}) {
     SCOPED_TRACE(time);
     tracker.advance(bar_at(time));
-    regions += tracker.report().regions;
     expect_survived(tracker, bar_at(time));
   }
 }

@@ -18,7 +18,7 @@ using test::ball_of_particles;
 using test::joined;
 using test::particles_at;
 
-constexpr double kSmall = 80;  // m^3; spacing 1
+constexpr double kSmall = 100;  // m^3; spacing 1
 
 /// A large ball and beside it a drop that is no ball.
 Particles ball_and_drop(double time) {

@@ -7,6 +7,7 @@
 #include "tracking/mesh/edges_by_length.h"
 #include "tracking/mesh/editable_mesh.h"
 #include "tracking/mesh/keep_vertices.h"
+#include "tracking/mesh/mesh_measures.h"
 #include "tracking/velocity/curvature.h"
 
 namespace flowskin::tracking {
@@ -49,30 +50,83 @@ std::vector<Edge> ordered_edges(const SurfaceMesh& mesh, const Sizes& sizes, Edg
   return edges;
 }
 
-// What a new vertex in the middle of an edge carries: the mean of the ends, as its position.
-void add_middle(const Edge& edge, SurfaceMesh& mesh) {
+// What a new vertex in the middle of an edge carries: the mean of the ends, as its position; the places of one end
+// where two bodies have met.
+void add_middle(const Edge& edge, double torn, SurfaceMesh& mesh) {
   const auto& [a, b] = edge;
-  mesh.rest_positions.push_back((mesh.rest_positions[a] + mesh.rest_positions[b]) / 2);
-  for (auto& layer : mesh.layers) layer.push_back((layer[a] + layer[b]) / 2);
+  const double farthest = torn * (mesh.positions[a] - mesh.positions[b]).norm();
+  const auto add = [&](std::vector<Vec3>& places) {
+    const Vec3 from = places[edge[0]], to = places[edge[1]];
+    places.push_back(torn > 0 && (from - to).norm() > farthest ? from : Vec3((from + to) / 2));
+  };
+  add(mesh.rest_positions);
+  for (auto& layer : mesh.layers) add(layer);
   mesh.velocities.push_back((mesh.velocities[a] + mesh.velocities[b]) / 2);
   mesh.ids.push_back(mesh.next_id++);
 }
 
-int split_long_edges(const std::function<void(std::vector<Vec3>&)>& put_on_surface, double longest, SurfaceMesh& mesh,
-                     Sizes& sizes) {
+// An edge of the surface at one moment: from end to end, with the normals there.
+struct EdgeAt {
+  Vec3 along, first_normal, second_normal;
+  // How far the middle of the surface between the ends lies outside that of the edge, were it a curve of the third
+  // degree (Vlachos et al. 2001, Curved PN triangles).
+  double sagitta() const { return along.dot(second_normal - first_normal) / 8; }
+  // Along the edge, along the surface, outward; not orthonormal where the edge has no length.
+  Mat3 frame() const {
+    Mat3 axes;
+    axes.col(0) = along.normalized();
+    axes.col(1) = (first_normal + second_normal).cross(axes.col(0)).normalized();
+    axes.col(2) = axes.col(0).cross(axes.col(1));
+    return axes;
+  }
+};
+
+// The surface at one moment, as far as its edges are asked for.
+class SurfaceAt {
+ public:
+  SurfaceAt(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles)
+      : positions_(positions), normals_(vertex_normals(positions, triangles)) {}
+  EdgeAt operator()(const Edge& edge) const {
+    return {positions_[edge[1]] - positions_[edge[0]], normals_[edge[0]], normals_[edge[1]]};
+  }
+
+ private:
+  std::vector<Vec3> positions_, normals_;
+};
+
+// A middle is put on the surface. The same move of its material at another moment: turned as the edge is, and as much
+// less as the surface was flatter there; nothing where it was bent the other way.
+Vec3 move_at(const EdgeAt& then, const EdgeAt& now, const Vec3& move) {
+  const double share = std::clamp(then.sagitta() / now.sagitta(), 0.0, 1.0);
+  const Vec3 turned = share * then.frame() * now.frame().transpose() * move;
+  return turned.allFinite() ? turned : Vec3(Vec3::Zero());
+}
+
+int split_long_edges(const std::function<void(std::vector<Vec3>&)>& put_on_surface, double longest, double torn,
+                     SurfaceMesh& mesh, Sizes& sizes) {
   const auto edges =
       ordered_edges(mesh, sizes, EdgeOrder::longest_first, [&](double length) { return length > longest; });
   if (edges.empty()) return 0;
   const std::size_t old_count = mesh.positions.size();
+  const SurfaceAt now(mesh.positions, mesh.triangles);
+  std::vector<std::pair<std::vector<Vec3>*, SurfaceAt>> others;
+  others.emplace_back(&mesh.rest_positions, SurfaceAt(mesh.rest_positions, mesh.triangles));
+  for (auto& layer : mesh.layers) others.emplace_back(&layer, SurfaceAt(layer, mesh.triangles));
   EditableMesh editable(mesh.positions, mesh.triangles);
+  std::vector<Edge> split;
   for (const Edge& edge : edges) {
     if (editable.split(edge[0], edge[1]) < 0) continue;
-    add_middle(edge, mesh);
+    split.push_back(edge);
+    add_middle(edge, torn, mesh);
     sizes.add_middle(edge);
   }
   std::vector<Vec3> born(mesh.positions.begin() + static_cast<std::ptrdiff_t>(old_count), mesh.positions.end());
   put_on_surface(born);
-  std::copy(born.begin(), born.end(), mesh.positions.begin() + static_cast<std::ptrdiff_t>(old_count));
+  for (std::size_t i = 0; i < born.size(); ++i) {
+    const Vec3 move = born[i] - mesh.positions[old_count + i];
+    for (auto& [places, then] : others) (*places)[old_count + i] += move_at(then(split[i]), now(split[i]), move);
+    mesh.positions[old_count + i] = born[i];
+  }
   return static_cast<int>(born.size());
 }
 
@@ -159,7 +213,7 @@ RemeshReport remesh(const std::function<void(std::vector<Vec3>&)>& put_on_surfac
   RemeshReport report;
   const double longest = settings.longest * settings.edge_length;
   Sizes targets(std::move(sizes));
-  report.splits = split_long_edges(put_on_surface, longest, mesh, targets);
+  report.splits = split_long_edges(put_on_surface, longest, settings.torn, mesh, targets);
   report.collapses = collapse_short_edges(settings.shortest * settings.edge_length, longest, mesh, targets);
   report.flips = flip_bad_edges(settings.delaunay_slack, mesh);
   return report;

@@ -17,6 +17,7 @@ struct RemeshSettings {
   double longest = 1.35;        ///< A longer edge is split in the middle.
   double shortest = 0.5;        ///< A shorter edge is collapsed into one of its ends.
   double delaunay_slack = 0.5;  ///< An edge is flipped where its opposite angles exceed 180 degrees by this (rad).
+  double torn = 0;  ///< An edge whose ends were so many times its length apart at rest joins two bodies; 0: none does.
   double curvature =
       0;  ///< The target is at most this multiple of the smaller radius of curvature; 0: the same everywhere.
   double finest = 0.5;  ///< But not less than this.
@@ -29,7 +30,8 @@ struct RemeshReport {
 };
 
 /// One pass of splits, collapses and flips. A vertex that stays keeps its position, rest position and id; the one in
-/// the middle of a split edge takes the mean of its ends' rest positions, a new id, and is put on the surface.
+/// the middle of a split edge takes the mean of its ends' rest positions, a new id, and is put on the surface; its rest
+/// position follows as far as the surface was bent there at rest, too.
 /// @pre `mesh` is closed and two-manifold; it stays so.
 RemeshReport remesh(const MetaballField& field, const RemeshSettings& settings, SurfaceMesh& mesh);
 
