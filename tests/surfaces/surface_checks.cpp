@@ -37,7 +37,7 @@ auto timed(double& seconds, Work work) {
 }
 
 Shape shape_of(const tracking::SurfaceShape& all) {
-  return {all.components - all.small_components, all.euler - all.small_euler, all.small_components};
+  return {all.components - all.small_components, all.euler - all.small_euler, all.small_components, all.small_euler};
 }
 
 /// Share of values for which it holds.
@@ -136,7 +136,7 @@ class Run {
   void measure_ids(const SurfaceMesh& mesh, FrameMeasures& measures) {
     const std::unordered_set<std::uint64_t> ids(mesh.ids.begin(), mesh.ids.end());
     if (measures.frame > 0) {
-      measures.change = !measures.fresh_shape.same_topology(result_.frames.back().fresh_shape);
+      measures.change = !measures.fresh_shape.all_the_same(result_.frames.back().fresh_shape);
       if (!ids_before_.empty())
         measures.ids_kept = share_of(ids_before_, [&](std::uint64_t id) { return ids.count(id) > 0; });
     }

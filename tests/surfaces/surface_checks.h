@@ -26,8 +26,7 @@ inline constexpr double narrow_triangles = 0.001;
 inline constexpr double shortest_edge = 0.5, longest_edge = 1.5;
 inline constexpr double odd_edges = 0.01;
 /// Share of the vertices of the frame before that are still there, by id: where components and Euler characteristic
-/// are those of the frame before, and where they are not. Where the surface itself contracts, its vertices must go for
-/// edges to keep their length: the share of its area that is gone does not count in the first case.
+/// are those of the frame before, and where they are not.
 inline constexpr double ids_kept = 0.98, ids_kept_through_change = 0.90;
 /// Median distance between a vertex's rest position and that of the particles beneath it, at the end, in spacings.
 inline constexpr double material_drift = 1;
@@ -38,8 +37,14 @@ inline constexpr double small_component = 1;
 /// Shape of a closed surface, the features under one cell left out.
 struct Shape {
   int components = 0, euler = 0;
-  int left_out = 0;  ///< Components under one cell.
+  int left_out = 0;        ///< Components under one cell.
+  int euler_left_out = 0;  ///< Of those.
   bool same_topology(const Shape& other) const { return components == other.components && euler == other.euler; }
+  /// With the features under one cell.
+  bool all_the_same(const Shape& other) const {
+    return components + left_out == other.components + other.left_out &&
+           euler + euler_left_out == other.euler + other.euler_left_out;
+  }
 };
 
 struct FrameMeasures {
@@ -56,7 +61,7 @@ struct FrameMeasures {
   double field_distance = 0;  ///< Largest |f| / |grad f| at a vertex, in effective radii.
   double narrow_triangles = 0, odd_edges = 0;
   double ids_kept = 1;        ///< Of the vertices of the frame before.
-  bool change = false;        ///< The fluid's topology is not that of the frame before.
+  bool change = false;        ///< The fluid's topology is not that of the frame before, small parts included.
   double material_drift = 0;  ///< Median, in spacings; 0 where the source knows no material.
   int regions = 0, born = 0;  ///< Replaced, and their vertices, since the frame before.
   int reextractions = 0;      ///< By the guard, since the frame before.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "tracking/extraction/marching_cubes.h"
@@ -12,6 +13,7 @@
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/self_intersections.h"
 #include "tracking/topology/disagreement.h"
+#include "tracking/topology/local_topology.h"
 #include "tracking/topology/replace_region.h"
 #include "tracking/topology/small_parts.h"
 #include "tracking/topology/strays.h"
@@ -19,15 +21,15 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr int kRounds = 9;
+constexpr int kRounds = 14;
 constexpr double kDust = 0.05;                       // volume of a component that is not worth its triangles, in cells
 constexpr double kResolved = 0.3;                    // cells; how well the grid knows the surface where it resolves it
 constexpr double kFarApart = 0.45;                   // cells; the two surfaces are not to be so far from each other
 constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};  // cells; a thin neck is near its stumps
-constexpr int kComparisons = 2;                      // of mesh and grid in one call
-constexpr int kAttempts = 30;                        // to fit a region in, until it has grown to where it does
-constexpr int kAllAroundEvery = 6;                   // attempts the region grows as a whole
-constexpr int kTimes = 4;                            // that a place may be named in one call
+constexpr double kHiddenShares[] = {0.75, 0.75, 0.4};  // of the trace that a hole leaves
+constexpr int kAttempts = 30;                          // to fit a region in, until it has grown to where it does
+constexpr int kAllAroundEvery = 6;                     // attempts the region grows as a whole
+constexpr int kTimes = 4;                              // that a place may be named in one call
 constexpr int kFocus = 2;  // layers of cells around a replaced region that are looked at again
 
 std::vector<Box> boxes_of(const SparseGrid& grid, const SurfaceMesh& mesh) {
@@ -116,6 +118,19 @@ class PlacesToMend {
     return {};
   }
 
+  // Holes and bridges in films, threads and gaps thinner than a cell: the field may have them or not, marching cubes
+  // does not see it.
+  std::vector<CellSet> find_hidden(const SurfaceMesh& mesh, const SurfaceGeometry& expected) {
+    if (hidden_round_ == std::ssize(kHiddenShares)) return {};
+    const CellSet hidden = CellSet(hidden_cells(fresh_.grid, mesh.positions, mesh.triangles)).dilated(1);
+    const LocalTopology topology(fresh_.grid, mesh.positions, mesh.triangles, expected);
+    while (hidden_round_ < std::ssize(kHiddenShares)) {
+      const CellSet cells(topology.differing(hidden, kHiddenShares[hidden_round_++]));
+      if (!cells.empty()) return regions(cells);
+    }
+    return {};
+  }
+
  private:
   // Where signs differ; and of the features that the grid hardly resolves, those that only one of the surfaces has.
   std::vector<CellSet::Cell> places_of_disagreement(const SurfaceMesh& mesh, const SurfaceGeometry& expected) const {
@@ -140,15 +155,36 @@ class PlacesToMend {
   double depth_;
   CellSet named_[kTimes];  // cells that have been named once, twice ...
   std::optional<CellSet> focus_;
-  int stray_round_ = 0;
+  int stray_round_ = 0, hidden_round_ = 0;
 };
 
-// Of a closed surface.
-SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
-  // Each triangle has three sides, each edge two of them.
-  const int edges = static_cast<int>(triangles.size()) * 3 / 2;
-  return {mesh_components(positions, triangles).count,
-          static_cast<int>(positions.size()) - edges + static_cast<int>(triangles.size())};
+// Of a closed surface, without the components that enclose less than `least` (m^3).
+SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, double least,
+                        double cell) {
+  const MeshComponents parts = mesh_components(positions, triangles);
+  // Each triangle has three sides, each edge two of them: V - E + F = V - F / 2.
+  std::vector<int> doubled_euler(parts.count, 0);
+  for (int part : parts.of_vertex) {
+    if (part >= 0) doubled_euler[part] += 2;
+  }
+  for (const Triangle& triangle : triangles) --doubled_euler[parts.of_vertex[triangle[0]]];
+  SurfaceCounts sum;
+  for (int part = 0; part < parts.count; ++part) {
+    const double volume = std::abs(parts.volumes[part]);
+    if (volume < least) continue;
+    ++sum.components;
+    sum.euler += doubled_euler[part] / 2;
+    if (volume < cell) continue;
+    ++sum.large_components;
+    sum.large_euler += doubled_euler[part] / 2;
+  }
+  return sum;
+}
+
+// Components that enclose less are taken out in the end (m^3).
+double least_volume(const TopologySettings& settings) {
+  const double dust = kDust * std::pow(settings.edge_length, 3);
+  return settings.small_parts == SmallParts::drop ? std::max(dust, settings.smallest_part) : dust;
 }
 
 // A mesh while regions of it are replaced: removed triangles and vertices stay in their places until the end.
@@ -249,21 +285,10 @@ class MeshUnderRepair {
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       if (!mend_.alive[t]) gone.push_back(mesh_.triangles[t]);
     }
-    const MaterialCarrier material(mesh_.positions, mesh_.rest_positions, gone, fresh_.field, particles, settings);
-    const int first = static_cast<int>(old_count_), count = static_cast<int>(mend_.positions.size());
-    std::vector<Vec3> rest(count - first);
-#pragma omp parallel for schedule(dynamic, 16)
-    for (int v = first; v < count; ++v) {
-      rest[v - first] = material.rest_position(mend_.positions[v], mend_.normals[v]);
-    }
-    mesh_.rest_positions.insert(mesh_.rest_positions.end(), rest.begin(), rest.end());
-    for (std::size_t k = 0; k < mesh_.layers.size(); ++k) {
-      const std::vector<Vec3>& beneath = particle_layer(particles, k);
-#pragma omp parallel for schedule(dynamic, 16)
-      for (int v = first; v < count; ++v)
-        rest[v - first] = material.place(mend_.positions[v], mend_.normals[v], mesh_.layers[k], beneath);
-      mesh_.layers[k].insert(mesh_.layers[k].end(), rest.begin(), rest.end());
-    }
+    const std::size_t count = mend_.positions.size();
+    MaterialCarrier(mesh_.positions, gone, fresh_.field, particles, settings)
+        .append_material(mesh_, std::span(mend_.positions).subspan(old_count_),
+                         std::span(mend_.normals).subspan(old_count_), mesh_);
     mesh_.velocities.resize(count, Vec3::Zero());
     mesh_.ids.resize(count, 0);
   }
@@ -323,11 +348,10 @@ class MeshUnderRepair {
 // Takes out the components that enclose next to nothing, either way round, and the small ones where they are unwanted.
 void sweep(const FieldGrid& fresh, const Particles& particles, const TopologySettings& settings, SurfaceMesh& mesh,
            Projection& projection, TopologyReport& report) {
-  const double dust = kDust * std::pow(fresh.grid.spacing(), 3);
-  const double least_volume = settings.small_parts == SmallParts::drop ? std::max(dust, settings.smallest_part) : dust;
+  const double least = least_volume(settings);
   const MeshComponents components = mesh_components(mesh.positions, mesh.triangles);
   std::vector<char> is_dust(components.count);
-  for (int c = 0; c < components.count; ++c) is_dust[c] = std::abs(components.volumes[c]) < least_volume;
+  for (int c = 0; c < components.count; ++c) is_dust[c] = std::abs(components.volumes[c]) < least;
   if (std::find(is_dust.begin(), is_dust.end(), 1) == is_dust.end()) return;
   MeshUnderRepair repair(fresh, mesh, projection);
   report.dropped += static_cast<int>(std::count(is_dust.begin(), is_dust.end(), 1));
@@ -357,12 +381,14 @@ TopologyReport change_topology(const MetaballField& field, const Particles& part
       SparseGrid::of_particles(field.positions(), field.settings(), settings.edge_length, field.shares());
   const FieldGrid fresh{field, grid};
   const SurfaceGeometry expected = march(grid);
+  const double least = least_volume(settings), cell = std::pow(settings.edge_length, 3);
   TopologyReport report;
-  report.expected = counts_of(expected.positions, expected.triangles);
+  report.expected = counts_of(expected.positions, expected.triangles, least, cell);
   PlacesToMend to_mend(fresh, settings.depth);
   for (int round = 0; round < kRounds; ++round) {
     std::vector<CellSet> regions = to_mend.find(mesh, projection, expected);
-    report.counts = counts_of(mesh.positions, mesh.triangles);
+    report.counts = counts_of(mesh.positions, mesh.triangles, least, cell);
+    if (regions.empty() && !(report.counts == report.expected)) regions = to_mend.find_hidden(mesh, expected);
     if (regions.empty() && !(report.counts == report.expected)) regions = to_mend.find_strays(mesh, expected);
     if (regions.empty()) break;
     if (!settings.local) {
@@ -378,7 +404,7 @@ TopologyReport change_topology(const MetaballField& field, const Particles& part
   }
   if (report.regions > 0 || settings.small_parts == SmallParts::drop) {
     sweep(fresh, particles, settings, mesh, projection, report);
-    report.counts = counts_of(mesh.positions, mesh.triangles);
+    report.counts = counts_of(mesh.positions, mesh.triangles, least, cell);
   }
   if (settings.small_parts == SmallParts::balls) round_small_parts(settings, mesh, report);
   return report;

@@ -22,10 +22,11 @@ struct TopologySettings {
   MaterialSettings material;
 };
 
-/// What tells surfaces of different topology apart.
+/// What tells surfaces of different topology apart; parts that are dropped because they are small do not count.
 struct SurfaceCounts {
   int components = 0;
-  int euler = 0;  ///< Euler characteristic.
+  int euler = 0;                              ///< Euler characteristic.
+  int large_components = 0, large_euler = 0;  ///< Of those that enclose a cell or more.
   bool operator==(const SurfaceCounts&) const = default;
 };
 

@@ -17,6 +17,11 @@ struct Probe {
   int winding;
 };
 
+// All cells that it lies in or on.
+void add_cells_around(const Probe& probe, std::vector<Cell>& cells) {
+  add_cells(probe.coordinates.array().ceil() - 1, probe.coordinates.array().floor(), cells);
+}
+
 // Of lines along one axis: places between crossings that lie on the same grid edge.
 void probe_edges(const std::vector<GridCrossing>& crossings, int axis, std::vector<Probe>& probes) {
   for_each_line(crossings, [&](const GridCrossing* begin, const GridCrossing* end) {
@@ -133,11 +138,17 @@ std::vector<Cell> disagreeing_cells(const MetaballField& field, const SparseGrid
   }
   std::vector<Cell> cells;
   for (std::size_t p = 0; p < probes.size(); ++p) {
-    if (!disagrees[p] && !(shallow && differs[p])) continue;
-    // All cells that it lies in or on.
-    const Vec3& x = probes[p].coordinates;
-    add_cells(x.array().ceil() - 1, x.array().floor(), disagrees[p] ? cells : *shallow);
+    if (disagrees[p] || (shallow && differs[p])) add_cells_around(probes[p], disagrees[p] ? cells : *shallow);
   }
+  return cells;
+}
+
+std::vector<Cell> hidden_cells(const SparseGrid& grid, const std::vector<Vec3>& positions,
+                               const std::vector<Triangle>& triangles) {
+  std::vector<Probe> probes;
+  for (int axis = 0; axis < 3; ++axis) probe_edges(grid_crossings(grid, axis, positions, triangles), axis, probes);
+  std::vector<Cell> cells;
+  for (const Probe& probe : probes) add_cells_around(probe, cells);
   return cells;
 }
 

@@ -21,6 +21,10 @@ std::vector<CellSet::Cell> disagreeing_cells(const MetaballField& field, const S
                                              const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                              std::vector<CellSet::Cell>* shallow = nullptr);
 
+/// The cells at grid edges that the mesh crosses more than once: marching cubes sees nothing of what is between.
+std::vector<CellSet::Cell> hidden_cells(const SparseGrid& grid, const std::vector<Vec3>& positions,
+                                        const std::vector<Triangle>& triangles);
+
 /// The cells with vertices that the grid knows nothing of: its values, interpolated in the cell of the vertex, put the
 /// surface farther from there than `reach` (in cells), or into another cell. Films, threads and gaps thinner than a
 /// cell are such places.

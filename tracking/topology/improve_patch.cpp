@@ -55,6 +55,16 @@ class LocalMesh {
     normals_.resize(positions_.size(), Vec3::Zero());
     for (int t : ring_) triangles_.push_back(local(whole.triangles[t]));
     for (const Triangle& triangle : patch.triangles) triangles_.push_back(local(triangle));
+    is_frozen_.assign(positions_.size(), 0);
+  }
+
+  // New vertices in these cells stay as they are.
+  void freeze(const SparseGrid& grid, const CellSet& cells) {
+    if (cells.empty()) return;
+    for (int v = old_count_; v < static_cast<int>(positions_.size()); ++v) {
+      const Vec3 x = grid.coordinates(positions_[v]);
+      is_frozen_[v] = meets(cells, x, x);
+    }
   }
 
   // Vertices of the mesh that the patch would drop, in ascending order.
@@ -77,7 +87,16 @@ class LocalMesh {
   }
 
   int old_count() const { return old_count_; }
-  bool is_new(int vertex) const { return vertex >= old_count_; }
+  bool is_frozen(int vertex) const { return is_frozen_[vertex] != 0; }
+  // New, and not frozen.
+  bool is_free(int vertex) const { return vertex >= old_count_ && !is_frozen(vertex); }
+  std::vector<int> free_vertices() const {
+    std::vector<int> found;
+    for (int v = old_count_; v < static_cast<int>(positions_.size()); ++v) {
+      if (is_free(v)) found.push_back(v);
+    }
+    return found;
+  }
   std::vector<Vec3>& positions() { return positions_; }
   const std::vector<Vec3>& positions() const { return positions_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }
@@ -86,7 +105,11 @@ class LocalMesh {
   MeshTopology topology() const { return build_topology(static_cast<int>(positions_.size()), triangles_); }
 
   // Without the vertices that edits removed; these are new ones.
-  void compact(EditableMesh& editable) { keep_numbered(editable.compact(), normals_); }
+  void compact(EditableMesh& editable) {
+    const std::vector<int> number = editable.compact();
+    keep_numbered(number, normals_);
+    keep_numbered(number, is_frozen_);
+  }
 
   // The patch, now with the triangles around it.
   void hand_over(MeshPatch& patch) const {
@@ -125,6 +148,7 @@ class LocalMesh {
   std::vector<int> ring_;             // old triangles that touch the patch
   std::vector<Vec3> positions_, normals_;
   std::vector<Triangle> triangles_;
+  std::vector<char> is_frozen_;
   std::vector<int> old_of_new_;  // the mesh's vertex that each has become, -1: none; empty: none has
 };
 
@@ -166,7 +190,7 @@ void keep_old_vertices(const FieldGrid& fresh, const MeshToMend& whole, const Me
   const MeshTopology topology = mesh.topology();
   for (int v = first; v < count; ++v) {
     const int old = old_of[v - first];
-    if (old < 0 || new_of[old] != v - first) continue;
+    if (!mesh.is_free(v) || old < 0 || new_of[old] != v - first) continue;
     const int vertex = dropped[old];
     if (!(whole.normals[vertex].dot(mesh.normals()[v]) > kSameSide)) continue;
     if (!may_move(mesh, topology, v, whole.positions[vertex], edge_length)) continue;
@@ -177,17 +201,19 @@ void keep_old_vertices(const FieldGrid& fresh, const MeshToMend& whole, const Me
 
 void collapse_short_edges(double edge_length, LocalMesh& mesh) {
   const MeshTopology topology = mesh.topology();
-  const std::vector<int> order = edges_by_length(
-      topology, mesh.positions(), EdgeOrder::shortest_first,
-      [&](int e, double length) { return length < kShortEdge * edge_length && mesh.is_new(topology.edges[e][1]); });
+  const std::vector<int> order =
+      edges_by_length(topology, mesh.positions(), EdgeOrder::shortest_first, [&](int e, double length) {
+        return length < kShortEdge * edge_length &&
+               (mesh.is_free(topology.edges[e][0]) || mesh.is_free(topology.edges[e][1]));
+      });
   if (order.empty()) return;
   const double longest = kLongEdge * edge_length;
   const double volume = kLargestCollapse * longest * longest * longest;
   EditableMesh editable(mesh.positions(), mesh.triangles());
   for (int e : order) {
     const auto& [low, high] = topology.edges[e];
-    if (editable.collapse(low, high, longest, volume)) continue;
-    if (mesh.is_new(low)) editable.collapse(high, low, longest, volume);
+    if (mesh.is_free(high) && editable.collapse(low, high, longest, volume)) continue;
+    if (mesh.is_free(low)) editable.collapse(high, low, longest, volume);
   }
   mesh.compact(editable);
 }
@@ -199,32 +225,35 @@ void flip_towards_delaunay(LocalMesh& mesh) {
     const auto& [a, b] = topology.edges[e];
     const auto& [first, second] = topology.edge_triangles[e];
     if (second < 0) continue;
-    bool touches_new = false;
+    bool is_free = false, is_frozen = false;
     for (int t : {first, second}) {
-      for (int vertex : mesh.triangles()[t]) touches_new = touches_new || mesh.is_new(vertex);
+      for (int vertex : mesh.triangles()[t]) {
+        is_free = is_free || mesh.is_free(vertex);
+        is_frozen = is_frozen || mesh.is_frozen(vertex);
+      }
     }
-    if (touches_new && editable.wants_flip(a, b)) editable.flip(a, b);
+    if (is_free && !is_frozen && editable.wants_flip(a, b)) editable.flip(a, b);
   }
 }
 
 }  // namespace
 
 void improve_patch(const FieldGrid& fresh, const MeshToMend& whole, const std::vector<int>& kept, Finish finish,
-                   MeshPatch& patch) {
+                   const CellSet& frozen, MeshPatch& patch) {
   const double edge_length = fresh.grid.spacing();
   const ProjectionSettings projection = default_projection(fresh.field.settings());
   LocalMesh mesh(whole, kept, patch);
+  mesh.freeze(fresh.grid, frozen);
   for (int v = mesh.old_count(); v < static_cast<int>(mesh.positions().size()); ++v) {
     SurfaceDistance point;
     project_point(fresh.field, projection, mesh.positions()[v], point);
     mesh.normals()[v] = point.normal;
   }
-  const int rounds = finish == Finish::evened ? kRounds : finish == Finish::once ? 1 : 0;
+  const int rounds = finish == Finish::evened ? kRounds : 0;
   for (int round = 0; round < rounds; ++round) {
     collapse_short_edges(edge_length, mesh);
     flip_towards_delaunay(mesh);
-    std::vector<int> moving;
-    for (int v = mesh.old_count(); v < static_cast<int>(mesh.positions().size()); ++v) moving.push_back(v);
+    const std::vector<int> moving = mesh.free_vertices();
     if (moving.empty()) break;
     relax(fresh.field, projection, mesh.topology(), mesh.triangles(), kRelaxationsPerRound, moving, mesh.positions(),
           mesh.normals(), Ridges::kept);

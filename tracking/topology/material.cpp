@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kSameSide = 0.3;         // cosine between a new vertex's normal and the old triangle's
 constexpr double kForeign = 2.0;          // particles whose rest positions are this many radii from the nearest's
+constexpr double kTorn = 0.15;            // radii by which the fit may miss the displacement of the nearest particle
+constexpr double kTornEdge = 3;           // times the longest edge of a triangle: two bodies have met there
 constexpr double kRegularization = 1e-6;  // of the moment matrix; keeps planar neighbourhoods solvable
 
 // Neighbours of x, the nearest first is `nearest`; the support grows until it holds a particle.
@@ -33,28 +35,76 @@ int find_neighbors(const MetaballField& field, int count, const Vec3& x, double&
   return nearest_particle;
 }
 
+// Whether two corners that are neighbours now were so far from each other that they are not of one body.
+bool is_torn(const Triangle& triangle, const std::vector<Vec3>& positions, const std::vector<Vec3>& places) {
+  const auto longest = [&](const std::vector<Vec3>& points) {
+    double squared = 0;
+    for (int corner = 0; corner < 3; ++corner)
+      squared = std::max(squared, (points[triangle[(corner + 1) % 3]] - points[triangle[corner]]).squaredNorm());
+    return std::sqrt(squared);
+  };
+  return longest(places) > kTornEdge * longest(positions);
+}
+
+// Displacements around x: moving least squares of first order.
+class DisplacementFit {
+ public:
+  template <class Displacement>
+  DisplacementFit(const MetaballField& field, const Displacement& displacement, const Vec3& x, double radius,
+                  const std::vector<int>& particles)
+      : x_(x), radius_(radius) {
+    Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
+    Coefficients sums = Coefficients::Zero();
+    for (int p : particles) {
+      const Eigen::Vector4d basis = basis_at(field.positions()[p]);
+      const double q = std::max(0.0, 1 - basis.tail<3>().squaredNorm());
+      const double weight = q * q * q;
+      moments += weight * basis * basis.transpose();
+      sums += weight * basis * displacement(p).transpose();
+    }
+    is_known_ = moments(0, 0) > 0;
+    if (!is_known_) return;
+    for (int axis = 1; axis < 4; ++axis) moments(axis, axis) += kRegularization * moments(0, 0);
+    coefficients_ = moments.ldlt().solve(sums);
+  }
+  bool is_known() const { return is_known_; }
+  Vec3 at(const Vec3& place) const { return coefficients_.transpose() * basis_at(place); }
+
+ private:
+  using Coefficients = Eigen::Matrix<double, 4, 3>;
+  Eigen::Vector4d basis_at(const Vec3& place) const {
+    const Vec3 offset = (place - x_) / radius_;
+    return {1, offset[0], offset[1], offset[2]};
+  }
+
+  Vec3 x_;
+  double radius_;
+  bool is_known_ = false;
+  Coefficients coefficients_ = Coefficients::Zero();
+};
+
 }  // namespace
 
 Vec3 material_place_at(const MetaballField& field, const std::vector<Vec3>& particle_places, const Vec3& x) {
   std::vector<int> found;
   double radius = 0;
   const int closest = find_neighbors(field, static_cast<int>(particle_places.size()), x, radius, found);
-  using Vec4 = Eigen::Vector4d;
-  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
-  Eigen::Matrix<double, 4, 3> sums = Eigen::Matrix<double, 4, 3>::Zero();
-  for (int p : found) {
-    const Vec3& rest = particle_places[p];
-    if ((rest - particle_places[closest]).norm() > kForeign * radius) continue;
-    const Vec3 offset = (field.positions()[p] - x) / radius;
-    const double q = std::max(0.0, 1 - offset.squaredNorm());
-    const double weight = q * q * q;
-    const Vec4 basis(1, offset[0], offset[1], offset[2]);
-    moments += weight * basis * basis.transpose();
-    sums += weight * basis * (rest - field.positions()[p]).transpose();
-  }
-  if (!(moments(0, 0) > 0)) return x + particle_places[closest] - field.positions()[closest];
-  for (int axis = 1; axis < 4; ++axis) moments(axis, axis) += kRegularization * moments(0, 0);
-  return x + (moments.ldlt().solve(sums)).row(0).transpose();
+  std::erase_if(found,
+                [&](int p) { return (particle_places[p] - particle_places[closest]).norm() > kForeign * radius; });
+  const auto displacement = [&](int p) { return Vec3(particle_places[p] - field.positions()[p]); };
+  const DisplacementFit fit(field, displacement, x, radius, found);
+  const Vec3 known = displacement(closest);
+  if (!fit.is_known()) return x + known;
+  if ((fit.at(field.positions()[closest]) - known).norm() <= kTorn * radius) return x + fit.at(x);
+  // Two bodies have met here, or one has torn: the nearest particle's half, as the displacements tell.
+  const int farthest = *std::max_element(found.begin(), found.end(), [&](int a, int b) {
+    return (displacement(a) - known).squaredNorm() < (displacement(b) - known).squaredNorm();
+  });
+  const Vec3 other = displacement(farthest);
+  std::erase_if(
+      found, [&](int p) { return (displacement(p) - other).squaredNorm() < (displacement(p) - known).squaredNorm(); });
+  const DisplacementFit half(field, displacement, x, radius, found);
+  return x + (half.is_known() ? half.at(x) : known);
 }
 
 Vec3 rest_position_at(const MetaballField& field, const Particles& particles, const Vec3& x) {
@@ -89,11 +139,10 @@ int limit_slip(double limit, const MetaballField& field, const Particles& partic
   return static_cast<int>(std::count(held.begin(), held.end(), 1));
 }
 
-MaterialCarrier::MaterialCarrier(const std::vector<Vec3>& positions, const std::vector<Vec3>& rest_positions,
-                                 const std::vector<Triangle>& triangles, const MetaballField& field,
-                                 const Particles& particles, const MaterialSettings& settings)
+MaterialCarrier::MaterialCarrier(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                                 const MetaballField& field, const Particles& particles,
+                                 const MaterialSettings& settings)
     : positions_(positions),
-      rest_positions_(rest_positions),
       triangles_(triangles),
       field_(field),
       particles_(particles),
@@ -101,6 +150,11 @@ MaterialCarrier::MaterialCarrier(const std::vector<Vec3>& positions, const std::
       tree_(positions, triangles) {}
 
 Vec3 MaterialCarrier::interpolated(const MeshPoint& point, const std::vector<Vec3>& values) const {
+  const Triangle& corners = triangles_[point.triangle];
+  if (is_torn(corners, positions_, values)) {
+    const auto heaviest = std::max_element(point.weights.begin(), point.weights.end()) - point.weights.begin();
+    return values[corners[heaviest]];
+  }
   Vec3 sum = Vec3::Zero();
   for (int corner = 0; corner < 3; ++corner) {
     sum += point.weights[corner] * values[triangles_[point.triangle][corner]];
@@ -108,16 +162,35 @@ Vec3 MaterialCarrier::interpolated(const MeshPoint& point, const std::vector<Vec
   return sum;
 }
 
-Vec3 MaterialCarrier::rest_position(const Vec3& x, const Vec3& normal) const {
-  return place(x, normal, rest_positions_, particles_.rest_positions);
+void MaterialCarrier::append_material(const SurfaceMesh& old, std::span<const Vec3> places,
+                                      std::span<const Vec3> normals, SurfaceMesh& mesh) const {
+  const std::size_t layers = old.layers.size(), first = mesh.rest_positions.size();
+  bool particles_know = !particles_.rest_positions.empty();
+  for (std::size_t k = 0; k < layers; ++k) particles_know = particles_know && !particle_layer(particles_, k).empty();
+  mesh.layers.resize(layers);
+  mesh.rest_positions.resize(first + places.size());
+  for (auto& layer : mesh.layers) layer.resize(first + places.size());
+#pragma omp parallel for schedule(dynamic, 16)
+  for (std::ptrdiff_t i = 0; i < std::ssize(places); ++i) {
+    const Source source = source_of(places[i], normals[i], particles_know);
+    mesh.rest_positions[first + i] = place(places[i], source, old.rest_positions, particles_.rest_positions);
+    for (std::size_t k = 0; k < layers; ++k)
+      mesh.layers[k][first + i] = place(places[i], source, old.layers[k], particle_layer(particles_, k));
+  }
 }
 
-Vec3 MaterialCarrier::place(const Vec3& x, const Vec3& normal, const std::vector<Vec3>& on_mesh,
+MaterialCarrier::Source MaterialCarrier::source_of(const Vec3& x, const Vec3& normal, bool particles_know) const {
+  Source source;
+  source.same_side = tree_.closest(x, settings_.reach, normal, kSameSide);
+  if (source.same_side.triangle < 0 && !particles_know) source.any_side = tree_.closest(x, settings_.far_reach);
+  return source;
+}
+
+Vec3 MaterialCarrier::place(const Vec3& x, const Source& source, const std::vector<Vec3>& on_mesh,
                             const std::vector<Vec3>& on_particles) const {
-  const MeshPoint point = tree_.closest(x, settings_.reach, normal, kSameSide);
-  if (point.triangle >= 0) return interpolated(point, on_mesh);
+  if (source.same_side.triangle >= 0) return interpolated(source.same_side, on_mesh);
   if (!on_particles.empty()) return material_place_at(field_, on_particles, x);
-  const MeshPoint far = tree_.closest(x, settings_.far_reach);
+  const MeshPoint& far = source.any_side;
   return far.triangle < 0 ? x : x + interpolated(far, on_mesh) - interpolated(far, positions_);
 }
 
@@ -129,21 +202,10 @@ SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& g
   mesh.positions = geometry.positions;
   mesh.triangles = geometry.triangles;
   mesh.velocities.assign(count, Vec3::Zero());
-  mesh.rest_positions.resize(count);
   mesh.ids.resize(count);
   mesh.next_id = old_mesh.next_id;
-
-  const MaterialCarrier material(old_mesh.positions, old_mesh.rest_positions, old_mesh.triangles, field, particles,
-                                 settings);
-#pragma omp parallel for schedule(dynamic, 256)
-  for (int v = 0; v < count; ++v) mesh.rest_positions[v] = material.rest_position(mesh.positions[v], normals[v]);
-  for (std::size_t k = 0; k < old_mesh.layers.size(); ++k) {
-    const std::vector<Vec3>& beneath = particle_layer(particles, k);
-    std::vector<Vec3>& layer = mesh.layers.emplace_back(count);
-#pragma omp parallel for schedule(dynamic, 256)
-    for (int v = 0; v < count; ++v)
-      layer[v] = material.place(mesh.positions[v], normals[v], old_mesh.layers[k], beneath);
-  }
+  MaterialCarrier(old_mesh.positions, old_mesh.triangles, field, particles, settings)
+      .append_material(old_mesh, mesh.positions, normals, mesh);
 
   const std::vector<int> old_of_new = nearest_points(old_mesh.positions, mesh.positions, settings.same_vertex);
   const std::vector<int> new_of_old = nearest_points(mesh.positions, old_mesh.positions, settings.same_vertex);

@@ -1,6 +1,7 @@
 // Carries material coordinates from particles and from an old mesh to a new one.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "tracking/extraction/marching_cubes.h"
@@ -49,21 +50,26 @@ struct MaterialSettings {
 class MaterialCarrier {
  public:
   /// Keeps references to all.
-  MaterialCarrier(const std::vector<Vec3>& positions, const std::vector<Vec3>& rest_positions,
-                  const std::vector<Triangle>& triangles, const MetaballField& field, const Particles& particles,
-                  const MaterialSettings& settings);
-  /// @param normal outward, of the surface at x
-  Vec3 rest_position(const Vec3& x, const Vec3& normal) const;
-  /// The same for another place of the material than that at rest.
-  /// @param on_mesh of the old mesh's vertices  @param on_particles of the particles; empty: unknown
-  Vec3 place(const Vec3& x, const Vec3& normal, const std::vector<Vec3>& on_mesh,
-             const std::vector<Vec3>& on_particles) const;
+  MaterialCarrier(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                  const MetaballField& field, const Particles& particles, const MaterialSettings& settings);
+  /// Appends rest positions and layers of the material at these places of the surface to those of `mesh`.
+  /// @param old what the vertices of the old surface know of the material; may be `mesh` itself
+  /// @param normals outward, of the surface at the places
+  void append_material(const SurfaceMesh& old, std::span<const Vec3> places, std::span<const Vec3> normals,
+                       SurfaceMesh& mesh) const;
 
  private:
+  /// Where a place takes its material from; no triangle: not from there.
+  struct Source {
+    MeshPoint same_side, any_side;
+  };
+  Source source_of(const Vec3& x, const Vec3& normal, bool particles_know) const;
+  /// @param on_mesh of the old surface's vertices  @param on_particles of the particles; empty: unknown
+  Vec3 place(const Vec3& x, const Source& source, const std::vector<Vec3>& on_mesh,
+             const std::vector<Vec3>& on_particles) const;
   Vec3 interpolated(const MeshPoint& point, const std::vector<Vec3>& values) const;
 
   const std::vector<Vec3>& positions_;
-  const std::vector<Vec3>& rest_positions_;
   const std::vector<Triangle>& triangles_;
   const MetaballField& field_;
   const Particles& particles_;

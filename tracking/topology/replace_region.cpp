@@ -21,6 +21,7 @@ constexpr int kMargin = 3;         // layers of cells by which the fresh surface
 constexpr double kReach = 0.75;    // between the two surfaces at the border, in cells
 constexpr double kSameSide = 0.5;  // cosine between normals of one sheet
 constexpr double kNear = 0.4;      // cells that evening may carry the surface away from where marching cubes put it
+constexpr int kFreezings = 5;      // of places where evening does harm
 constexpr int kPinchRounds = 30;
 
 using Side = std::pair<int, int>;  // of a triangle, from one corner to the next
@@ -293,29 +294,47 @@ bool fits_the_rest(const FieldGrid& fresh, const MeshToMend& mesh, const std::ve
   return false;
 }
 
-// Whether an evened patch is still where marching cubes put it: a vertex of either is near the other.
-bool stays_near(const MeshToMend& mesh, const MeshPatch& raw, const MeshPatch& evened, double reach) {
+// Where an evened patch is not any more where marching cubes put it: vertices of either that are far from the other.
+std::vector<CellSet::Cell> strayed_cells(const FieldGrid& fresh, const MeshToMend& mesh, const MeshPatch& raw,
+                                         const MeshPatch& evened) {
+  const double reach = kNear * fresh.grid.spacing();
   const SurfaceGeometry before = geometry_of(mesh, raw), after = geometry_of(mesh, evened);
-  const auto reaches = [&](const std::vector<Vec3>& born, const SurfaceGeometry& other) {
+  std::vector<CellSet::Cell> cells;
+  const auto compare = [&](const std::vector<Vec3>& born, const SurfaceGeometry& other) {
     const ClosestPointTree tree(other.positions, other.triangles);
-    return std::all_of(born.begin(), born.end(), [&](const Vec3& x) { return tree.distance(x, reach) <= reach; });
+    for (const Vec3& x : born) {
+      if (tree.distance(x, reach) > reach) add_cells(fresh.grid.coordinates(x), fresh.grid.coordinates(x), cells);
+    }
   };
-  return reaches(raw.born, after) && reaches(evened.born, before);
+  compare(raw.born, after);
+  compare(evened.born, before);
+  return cells;
 }
 
-// The most evened of the patches that intersect nothing and cut no feature off, else the raw one.
+// The patch, evened out wherever that makes it intersect nothing and cuts no feature off; else the raw one.
 MeshPatch improved(const FieldGrid& fresh, const MeshToMend& mesh, const std::vector<int>& kept, const MeshPatch& patch,
                    Misfit& misfit) {
   const PatchCrossings crossings(fresh.grid, mesh, kept);
   MeshPatch best;
-  for (const Finish finish : {Finish::evened, Finish::once, Finish::merged, Finish::raw}) {
-    best = patch;
-    improve_patch(fresh, mesh, kept, finish, best);
-    if (finish != Finish::raw && !stays_near(mesh, patch, best, kNear * fresh.grid.spacing())) continue;
-    misfit.cells = crossings.cells(best);
-    if (misfit.cells.empty()) return best;
+  for (const Finish finish : {Finish::evened, Finish::merged}) {
+    CellSet frozen;
+    for (int attempt = 0; attempt < kFreezings; ++attempt) {
+      best = patch;
+      improve_patch(fresh, mesh, kept, finish, frozen, best);
+      std::vector<CellSet::Cell> bad = strayed_cells(fresh, mesh, patch, best);
+      const std::vector<CellSet::Cell> crossing = crossings.cells(best);
+      bad.insert(bad.end(), crossing.begin(), crossing.end());
+      if (bad.empty()) return best;
+      const CellSet wider = CellSet(std::move(bad)).dilated(attempt / 2);
+      std::vector<CellSet::Cell> all = frozen.cells();
+      all.insert(all.end(), wider.cells().begin(), wider.cells().end());
+      frozen = CellSet(std::move(all));
+    }
   }
-  misfit.why = "the fresh surface passes through the rest of the mesh";
+  best = patch;
+  improve_patch(fresh, mesh, kept, Finish::raw, {}, best);
+  misfit.cells = crossings.cells(best);
+  if (!misfit.cells.empty()) misfit.why = "the fresh surface passes through the rest of the mesh";
   return best;
 }
 

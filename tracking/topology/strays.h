@@ -9,7 +9,8 @@
 namespace flowskin::tracking {
 
 /// How far the vertices of two surfaces are from the other surface, as far as that looks the same way (at most 60
-/// degrees off). For features below the size of a cell, which the nodes of a grid do not see.
+/// degrees off). For features
+/// below the size of a cell, which the nodes of a grid do not see.
 class Strays {
  public:
   /// @param farthest distances are measured up to here (m)
