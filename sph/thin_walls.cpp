@@ -101,11 +101,21 @@ void add_cut(const WallGuard::Triangle& wall, const Vec3& from, const Vec3& to, 
   const double share = from_height / (from_height - to_height);
   const Vec3 p = from + share * (to - from);
   const double hair = 1e-6 * (to - from).norm();
-  const Vec3 low = wall.a.cwiseMin(wall.b).cwiseMin(wall.c), high = wall.a.cwiseMax(wall.b).cwiseMax(wall.c);
-  if ((p - low).minCoeff() < -hair || (p - high).maxCoeff() > hair) return;
   if ((closest_on_triangle(p, wall.a, wall.b, wall.c, wall.normal) - p).norm() > hair) return;
   cuts.push_back({share, from_height > 0 ? wall.normal : Vec3(-wall.normal)});
 }
+
+struct Bounds {
+  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+
+  Bounds() = default;
+  explicit Bounds(const WallGuard::Triangle& t)
+      : low(t.a.cwiseMin(t.b).cwiseMin(t.c)), high(t.a.cwiseMax(t.b).cwiseMax(t.c)) {}
+  void include(const Vec3& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
+  bool meets(const Bounds& other) const {
+    return (low.array() <= other.high.array()).all() && (high.array() >= other.low.array()).all();
+  }
+};
 
 // Crossings at the same place are one: the line meets an edge that two triangles share.
 bool is_hidden(std::vector<Cut>& cuts) {
@@ -148,28 +158,38 @@ bool ThinWalls::near(const Vec3& center) const {
 
 void ThinWalls::hide(std::span<const Vec3> targets, std::span<const Vec3> sources,
                      std::vector<std::uint8_t>& hidden) const {
-  Vec3 low = targets[0], high = targets[0];
-  for (const Vec3& p : targets) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  Bounds own, all_places;
+  for (const Vec3& p : targets) own.include(p);
+  all_places = own;
+  for (const Vec3& p : sources) all_places.include(p);
+  const Vec3 reach = Vec3::Constant(reach_);
   std::vector<std::uint32_t> near;
-  guard_.query(low - Vec3::Constant(reach_), high + Vec3::Constant(reach_), near);
+  guard_.query((own.low - reach).cwiseMax(all_places.low), (own.high + reach).cwiseMin(all_places.high), near);
   // On which side of a wall's plane the targets are, a bit each. Most walls have everything on one side.
   const auto in_front = [&](const WallGuard::Triangle& wall, const Vec3& p) { return wall.normal.dot(p - wall.a) > 0; };
   std::vector<std::uint8_t> fronts;
+  std::vector<Bounds> bounds;
   const unsigned all = (1U << targets.size()) - 1;
   std::erase_if(near, [&](std::uint32_t t) {
     const WallGuard::Triangle& wall = guard_.triangle(t);
+    const Bounds wall_bounds(wall);
+    if (!wall_bounds.meets(all_places)) return true;
     unsigned front = 0;
     for (std::size_t k = 0; k < targets.size(); ++k) front |= static_cast<unsigned>(in_front(wall, targets[k])) << k;
     const auto same_side = [&](const Vec3& p) { return in_front(wall, p) == (front != 0); };
     if ((front == 0 || front == all) && std::all_of(sources.begin(), sources.end(), same_side)) return true;
     fronts.push_back(static_cast<std::uint8_t>(front));
+    bounds.push_back(wall_bounds);
     return false;
   });
   if (near.empty()) return;
   std::array<std::vector<Cut>, PointCluster::width> cuts;
   for (std::size_t j = 0; j < sources.size(); ++j) {
     for (auto& of_target : cuts) of_target.clear();
+    Bounds lines = own;
+    lines.include(sources[j]);
     for (std::size_t w = 0; w < near.size(); ++w) {
+      if (!lines.meets(bounds[w])) continue;
       const WallGuard::Triangle& wall = guard_.triangle(near[w]);
       const unsigned apart = in_front(wall, sources[j]) ? all & ~unsigned{fronts[w]} : fronts[w];
       for (std::size_t k = 0; k < targets.size(); ++k) {
