@@ -153,20 +153,36 @@ def bar(radius=0.09, half=0.24, sides=12):
     mesh.write("bar.obj", f"A closed bar of radius {radius} m and length {2 * half} m along the z axis")
 
 
-def cylinder(name, title, lid, around=48):
-    """Around the y axis, radius 1, from y = 0 to 1."""
+def around_y(j, radius, y, around=48):
+    """Point j of a circle about the y axis."""
+    a = 2 * math.pi * j / around
+    return (round(radius * math.cos(a), 6) + 0.0, y, round(-radius * math.sin(a), 6) + 0.0)
+
+
+def cylinder(around=48):
+    """Around the y axis, radius 1, from y = 0 to 1; closed."""
     mesh = Mesh()
-
-    def point(j, y):
-        a = 2 * math.pi * j / around
-        return (round(math.cos(a), 6) + 0.0, y, round(-math.sin(a), 6) + 0.0)
-
     for j in range(around):
-        mesh.face(point(j, 0.0), point(j + 1, 0.0), point(j + 1, 1.0), point(j, 1.0))
-        mesh.face((0.0, 0.0, 0.0), point(j + 1, 0.0), point(j, 0.0))
-        if lid:
-            mesh.face((0.0, 1.0, 0.0), point(j, 1.0), point(j + 1, 1.0))
-    mesh.write(name, title)
+        a, b = around_y(j, 1, 0.0), around_y(j + 1, 1, 0.0)
+        c, d = around_y(j + 1, 1, 1.0), around_y(j, 1, 1.0)
+        mesh.face(a, b, c, d)
+        mesh.face((0.0, 0.0, 0.0), b, a)
+        mesh.face((0.0, 1.0, 0.0), d, c)
+    mesh.write("cylinder.obj", "A closed cylinder around the y axis, radius 1 m, height 1 m")
+
+
+def tub(thick=0.08, around=48):
+    """A solid tub: room of radius 1 from y = 0 to 1, and walls around it, so that no fluid shows through."""
+    mesh, outer = Mesh(), 1 + thick
+    for j in range(around):
+        k = j + 1
+        mesh.face(around_y(k, 1, 0.0), around_y(j, 1, 0.0), around_y(j, 1, 1.0), around_y(k, 1, 1.0))
+        mesh.face((0.0, 0.0, 0.0), around_y(j, 1, 0.0), around_y(k, 1, 0.0))
+        mesh.face(around_y(j, 1, 1.0), around_y(j, outer, 1.0), around_y(k, outer, 1.0), around_y(k, 1, 1.0))
+        mesh.face(around_y(j, outer, -thick), around_y(k, outer, -thick), around_y(k, outer, 1.0),
+                  around_y(j, outer, 1.0))
+        mesh.face((0.0, -thick, 0.0), around_y(k, outer, -thick), around_y(j, outer, -thick))
+    mesh.write("tub.obj", "A tub around the y axis, inside radius 1 m and height 1 m, open above")
 
 
 def paddle(width=0.5, height=0.16, shaft=0.06, top=0.6, thick=0.05):
@@ -206,7 +222,7 @@ if __name__ == "__main__":
     capsule()
     bar()
     dish()
-    cylinder("cylinder.obj", "A closed cylinder around the y axis, radius 1 m, height 1 m", lid=True)
-    cylinder("tub.obj", "A cylinder around the y axis without a lid, radius 1 m, height 1 m", lid=False)
+    cylinder()
+    tub()
     paddle()
     star()
