@@ -183,8 +183,8 @@ ImplicitViscosity::Lanes3 ImplicitViscosity::Loops::resistance(std::size_t clust
       const FluidPack& j = problem.fluid[index];
       const auto [dx, dy, dz] = image.difference<periodic>(x, y, z, j);
       const Float8 r2 = dx * dx + dy * dy + dz * dz;
-      const Float8 shape = Kernel::shape(sqrt(r2) * inverse_support);
-      const Float8 k = pairs.fluid<variable>(shape, r2, viscosity, variable ? problem.viscosities[index] : 0.0F);
+      const Float8 q = sqrt(r2) * inverse_support;
+      const Float8 k = pairs.fluid<variable>(q, viscosity, variable ? problem.viscosities[index] : 0.0F);
       add(k, dx, dy, dz, r2, vx - broadcast(j.vx), vy - broadcast(j.vy), vz - broadcast(j.vz));
     }
   }

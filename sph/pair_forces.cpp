@@ -30,8 +30,7 @@ PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wa
   // Without a free surface nothing is missing where the density is low.
   least_compression = s.background_pressure > 0 ? -0.99F : 0.0F;
   diffusion = static_cast<float>(2 * s.density_diffusion * h * c * gradient);
-  viscosity = static_cast<float>(viscous * lattice_viscosity_factor(s) * cell * gradient_scale(support));
-  softening = static_cast<float>(0.01 * h * h);
+  viscosity = static_cast<float>((variable_viscosity ? 1 : s.viscosity) * lattice_viscosity_scale(s));
   for (int a = 0; a < 3; ++a) compression_gradient[a] = static_cast<float>(s.gravity[a] / (c * c));
   xsph = static_cast<float>(s.xsph) * kernel_scale;
   const double wall_scale = gradient_scale(wall.support) * std::pow(wall.support, 3);
@@ -171,14 +170,14 @@ inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidP
   if constexpr (Viscosity::monaghan) {
     Float8 f = s * pressure;
     if constexpr (Viscosity::viscous) {
-      f -= c.viscous.fluid<Viscosity::variable>(s, r2, own_viscosity, viscosity) * approach;
+      f -= c.viscous.fluid<Viscosity::variable>(q, own_viscosity, viscosity) * approach;
     }
     sums.ax += f * dx;
     sums.ay += f * dy;
     sums.az += f * dz;
   } else {
     const Float8 f = s * pressure;
-    const Float8 g = c.viscous.fluid<Viscosity::variable>(s, r2, own_viscosity, viscosity) * r2;
+    const Float8 g = c.viscous.fluid<Viscosity::variable>(q, own_viscosity, viscosity) * r2;
     sums.ax += f * dx - g * ux;
     sums.ay += f * dy - g * uy;
     sums.az += f * dz - g * uz;

@@ -39,8 +39,7 @@ struct PairCoefficients {
   float background = 0;                ///< Background pressure / (rho_0 c^2)
   float least_compression = 0;         ///< Of the summed density: 0 where there are free surfaces.
   float diffusion = 0;                 ///< 2 delta h c V G
-  float viscosity = 0;                 ///< 10 nu V G (Monaghan's form) or 2 nu V G (Morris's)
-  float softening = 0;                 ///< 0.01 h^2, keeps the viscous force of coincident particles finite
+  float viscosity = 0;                 ///< nu times lattice_viscosity_scale(), 1/(m^2 s)
   float compression_gradient[3] = {};  ///< Slope of the compression of fluid at rest: g / c^2 (1/m)
   float xsph = 0;                      ///< xsph V / R^3
   float wall_inverse_support = 0;      ///< 1 / R_b

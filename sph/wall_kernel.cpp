@@ -1,5 +1,6 @@
 #include "sph/wall_kernel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -96,20 +97,16 @@ double lattice_pressure_factor(const SolverSettings& settings) {
   return lattice_kernel_sum(settings) / (virial * cubed(settings.spacing));
 }
 
-double lattice_viscosity_factor(const SolverSettings& settings) {
-  const double support = settings.support_radius * settings.spacing, softening = 0.01 * support * support / 4;
-  const bool monaghan = settings.viscosity_form == ViscosityForm::monaghan;
+double lattice_viscosity_scale(const SolverSettings& settings) {
+  const double support = settings.support_radius * settings.spacing;
   double sum = 0;
-  with_kernel(settings.kernel, [&](auto kernel) {
-    using Kernel = decltype(kernel);
-    // The force on the particle at 0 in the flow v = (y^2 / 2, 0, 0), whose Laplacian is 1.
-    for_lattice(settings, [&](double x, double y, double z) {
-      const double r2 = x * x + y * y + z * z;
-      const double s = Kernel::gradient_scale(support) * Kernel::shape(std::sqrt(r2) / support) / (r2 + softening);
-      sum += r2 == 0 ? 0 : monaghan ? 10 * s * 0.5 * y * y * x * x : 2 * s * r2 * 0.5 * y * y;
-    });
+  // The force on the particle at 0 in the flow v = (y^2 / 2, 0, 0), whose Laplacian is 1.
+  for_lattice(settings, [&](double x, double y, double z) {
+    const double r2 = x * x + y * y + z * z, u = std::max(0.0, 1 - std::sqrt(r2) / support);
+    const double along = settings.viscosity_form == ViscosityForm::monaghan ? x * x : r2;
+    sum += u * u * u * (2 - u) * along * 0.5 * y * y;
   });
-  return 1 / (sum * cubed(settings.spacing));
+  return 1 / sum;
 }
 
 WallKernel make_wall_kernel(const SolverSettings& settings) {

@@ -32,7 +32,8 @@ double lattice_kernel_sum(const SolverSettings& settings);
 /// spacings.
 double lattice_pressure_factor(const SolverSettings& settings);
 
-/// Factor that makes the discrete Laplacian of the viscous force exact for a quadratic shear flow on the lattice.
-double lattice_viscosity_factor(const SolverSettings& settings);
+/// Factor of the viscous weight of pairs (viscous_pairs.h) that makes the force exact for a quadratic shear flow on the
+/// lattice, at a viscosity of 1 m^2/s (1/m^4).
+double lattice_viscosity_scale(const SolverSettings& settings);
 
 }  // namespace flowskin::sph

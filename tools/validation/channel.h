@@ -11,7 +11,8 @@ namespace flowskin::tools {
 /// Lengths in units of the width L, speeds of V0, times of L^2 / nu.
 struct ChannelFlow {
   std::string title;
-  double force = 0;  ///< F L^2 / (nu V0)
+  double force = 0;       ///< F L^2 / (nu V0)
+  double wall_speed = 0;  ///< Of the upper plate, from the start on.
   /// Speed at the distance y from the lower plate at time t.
   std::function<double(double y, double t)> reference;
 };

@@ -12,6 +12,7 @@ ValidationCase hydrostatic_case();
 ValidationCase conservation_case();
 ValidationCase symmetry_case();
 ValidationCase poiseuille_case();
+ValidationCase couette_case();
 ValidationCase film_case();
 ValidationCase rheology_case();
 ValidationCase taylor_green_case();
@@ -23,9 +24,9 @@ ValidationCase dam_break_case();
 
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases{
-      hydrostatic_case(), conservation_case(),  symmetry_case(),        poiseuille_case(),
-      film_case(),        rheology_case(),      taylor_green_case(),    oscillating_drop_case(),
-      square_drop_case(), bingham_slump_case(), gravity_current_case(), dam_break_case(),
+      hydrostatic_case(),   conservation_case(),    symmetry_case(),     poiseuille_case(),       couette_case(),
+      film_case(),          rheology_case(),        taylor_green_case(), oscillating_drop_case(), square_drop_case(),
+      bingham_slump_case(), gravity_current_case(), dam_break_case(),
   };
   return cases;
 }
