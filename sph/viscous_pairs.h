@@ -8,7 +8,8 @@ namespace flowskin::sph {
 
 /// Weight k of fluid pairs at the distance q (support radii), the same for all kernels. The textbook forms take |grad
 /// W| / r, with few neighbours so steep that the viscosity depends on how they lie: 0.6 of the nominal one on a cubic
-/// lattice, 0.9 after shear by half a spacing, 1 in a close packing. With this weight: 0.96 to 1.01.
+/// lattice, 0.9 after shear by half a spacing, 1 on average in bcc and fcc. With this weight: 0.98 to 0.99 under shear,
+/// 0.98 to 1.05 in bcc and fcc; but up to 1.3 across the diagonals of a cubic lattice that is turned, not sheared.
 inline Float8 viscous_weight(const Float8& q) {
   const Float8 one = broadcast(1.0F), u = max(one - q, Float8{});
   return u * u * u * (one + q);
