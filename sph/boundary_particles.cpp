@@ -17,6 +17,7 @@ BoundaryParticles sample_boundaries(const std::vector<Boundary>& boundaries, con
     }
   }
   result.volumes = boundary_volumes(result.positions, settings.kernel, wall.support, periodic);
+  for (double& volume : result.volumes) volume *= wall.volume_factor;
   if (!meshes.empty()) result.guard = WallGuard(meshes, 2 * settings.spacing, periodic);
   return result;
 }

@@ -16,4 +16,12 @@ Real clamped_pressure(Real e) {
   return e > 0 ? tait_pressure_over_bulk(e) / Real(7) : Real(0);
 }
 
+/// p / (rho_0 c^2) of a fluid without free surfaces under a background pressure (in the same unit): below the rest
+/// density the pressure falls, down to zero.
+template <typename Real>
+Real pressure_with_background(Real e, Real background) {
+  const Real pressure = tait_pressure_over_bulk(e) / Real(7) + background;
+  return pressure > 0 ? pressure : Real(0);
+}
+
 }  // namespace flowskin::sph

@@ -25,7 +25,10 @@ PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wa
   inverse_support = static_cast<float>(1 / support);
   kernel_scale = static_cast<float>(volume / (support * support * support));
   kernel_gradient = static_cast<float>(gradient);
-  pressure_scale = static_cast<float>(gradient * c * c);
+  pressure_scale = static_cast<float>(gradient * c * c * lattice_pressure_factor(s));
+  background = static_cast<float>(s.background_pressure / (s.rest_density * c * c));
+  // Without a free surface nothing is missing where the density is low.
+  least_compression = s.background_pressure > 0 ? -0.99F : 0.0F;
   diffusion = static_cast<float>(2 * s.density_diffusion * h * c * gradient);
   viscosity = static_cast<float>(viscous * lattice_viscosity_factor(s) * cell * gradient_scale(support));
   softening = static_cast<float>(0.01 * h * h);
@@ -46,7 +49,9 @@ PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wa
 
 float PairCoefficients::pack_pressure(float compression) const {
   const float density_ratio = 1 + compression;
-  return pressure_scale * clamped_pressure(compression) / (density_ratio * density_ratio);
+  const float pressure =
+      least_compression < 0 ? pressure_with_background(compression, background) : clamped_pressure(compression);
+  return pressure_scale * pressure / (density_ratio * density_ratio);
 }
 
 namespace {
@@ -251,7 +256,7 @@ void run_densities(const PairCoefficients& coefficients, const PairData& data) {
     }
     for (std::uint32_t k = 0; k < count; ++k) {
       FluidPack& pack = data.fluid[first + k];
-      pack.compression = std::max(0.0F, coefficients.kernel_scale * sum[k] + wall_sum[k] - 1);
+      pack.compression = std::max(coefficients.least_compression, coefficients.kernel_scale * sum[k] + wall_sum[k] - 1);
       pack.pressure = coefficients.pack_pressure(pack.compression);
     }
   }

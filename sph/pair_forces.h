@@ -24,6 +24,8 @@ struct PairCoefficients {
   float kernel_scale = 0;              ///< V / R^3
   float kernel_gradient = 0;           ///< V G
   float pressure_scale = 0;            ///< V G c^2
+  float background = 0;                ///< Background pressure / (rho_0 c^2)
+  float least_compression = 0;         ///< Of the summed density: 0 where there are free surfaces.
   float diffusion = 0;                 ///< 2 delta h c V G
   float viscosity = 0;                 ///< 10 nu V G (Monaghan's form) or 2 nu V G (Morris's)
   float softening = 0;                 ///< 0.01 h^2, keeps the viscous force of coincident particles finite

@@ -64,7 +64,11 @@ struct SolverSettings {
   Vec3 gravity{0, -9.81, 0};            ///< m/s^2
   double max_speed = 0;       ///< Fastest flow expected (m/s); 0: from heights, gravity and initial velocities.
   double speed_of_sound = 0;  ///< m/s; 0: ten times the fastest flow expected, so that density stays within 1 %.
-  double xsph = 0;            ///< Share of XSPH smoothing in the velocity that moves particles, 0 to 1.
+  /// Added to the pressure everywhere (Pa), for fluid that fills its space: inside pipes, in periodic boxes. Then
+  /// suction is possible, down to this pressure, and the particles stay evenly spread. 0: there are free surfaces, no
+  /// suction.
+  double background_pressure = 0;
+  double xsph = 0;  ///< Share of XSPH smoothing in the velocity that moves particles, 0 to 1.
   DensityMethod density_method = DensityMethod::summation;
   double density_diffusion = 0.1;  ///< Continuity density only: coefficient delta of its diffusion; 0: none.
   double acoustic_cfl = 0.4;       ///< dt <= acoustic_cfl h / (c + |v|), h the smoothing length

@@ -36,6 +36,44 @@ void for_lattice(const SolverSettings& settings, Function f) {
 
 double cubed(double x) { return x * x * x; }
 
+// Distance of boundary particles in support radii. At 0.5 the friction on a particle half a spacing above the wall
+// varies by 20 % with its place over the samples, at 0.4 by 2.6 %.
+constexpr double sample_distance = 0.4;
+
+// What a boundary particle in the middle of a plane of them sees: their kernel sum times the area of one (1/m).
+template <typename Kernel>
+double sample_sum(double radius, double distance) {
+  double sum = 0;
+  const int reach = static_cast<int>(std::ceil(radius / distance));
+  for (int i = -reach; i <= reach; ++i) {
+    for (int j = -reach; j <= reach; ++j) sum += Kernel::value(distance * std::hypot(i, j), radius);
+  }
+  return sum * distance * distance;
+}
+
+// What the first layer of a lattice lacks where nothing lies behind it.
+struct Missing {
+  double compression;  ///< share of the kernel sum
+  double push;         ///< its gradient across the layer (1/m)
+};
+
+Missing missing_half(const SolverSettings& settings) {
+  const double support = settings.support_radius * settings.spacing;
+  double all = 0, behind = 0, push = 0;
+  with_kernel(settings.kernel, [&](auto kernel) {
+    for_lattice(settings, [&](double x, double y, double z) {
+      const double r = std::hypot(x, y, z), w = decltype(kernel)::value(r, support);
+      all += w;
+      if (y >= 0) return;
+      behind += w;
+      // Both particles of a pair push: twice, as one boundary particle pushes with the fluid's pressure alone. The
+      // layers behind also push the second layer, and so on, all of which the first has to pass on: times |y| layers.
+      push += 2 * decltype(kernel)::derivative(r, support) * y / r * (-y / settings.spacing);
+    });
+  });
+  return {behind / all, push / all};
+}
+
 }  // namespace
 
 double lattice_kernel_sum(const SolverSettings& settings) {
@@ -44,6 +82,18 @@ double lattice_kernel_sum(const SolverSettings& settings) {
     sum += kernel_value(settings.kernel, std::hypot(x, y, z), settings.support_radius * settings.spacing);
   });
   return sum * cubed(settings.spacing);
+}
+
+double lattice_pressure_factor(const SolverSettings& settings) {
+  const double support = settings.support_radius * settings.spacing;
+  double virial = 0;
+  with_kernel(settings.kernel, [&](auto kernel) {
+    for_lattice(settings, [&](double x, double y, double z) {
+      const double r = std::hypot(x, y, z);
+      virial -= decltype(kernel)::derivative(r, support) * r / 3;
+    });
+  });
+  return lattice_kernel_sum(settings) / (virial * cubed(settings.spacing));
 }
 
 double lattice_viscosity_factor(const SolverSettings& settings) {
@@ -65,28 +115,30 @@ double lattice_viscosity_factor(const SolverSettings& settings) {
 WallKernel make_wall_kernel(const SolverSettings& settings) {
   WallKernel wall;
   const double spacing = settings.spacing, support = settings.support_radius * spacing;
-  // What the first layer of a lattice lacks where nothing lies behind it: half of all but its own layer.
-  double own_layer = 0, all = 0;
-  for_lattice(settings, [&](double x, double y, double z) {
-    const double w = kernel_value(settings.kernel, std::hypot(x, y, z), support);
-    all += w;
-    if (y == 0) own_layer += w;
-  });
-  const double missing = 0.5 * (1 - own_layer / all);
-
+  const Missing missing = missing_half(settings);
   with_kernel(settings.kernel, [&](auto kernel) {
     using Kernel = decltype(kernel);
     const auto layer = [&](double d, double radius) {
       return plane_integral(d, radius, [&](double r, double) { return Kernel::value(r, radius); });
     };
-    // A plane of boundary particles adds layer(d) / layer(0) at distance d; this grows with the support radius.
-    double low = 0.5 * spacing, high = 2 * support;
+    // Minus the derivative of layer(): the normal part of the gradient.
+    const auto push = [&](double d, double radius) {
+      return plane_integral(
+          d, radius, [&](double r, double) { return Kernel::gradient_scale(radius) * Kernel::shape(r / radius) * d; });
+    };
+    // A plane of boundary particles adds layer(d) / layer(0) at distance d. How steep that is, for its height, falls
+    // with the support radius; the volume factor then gives it the height.
+    double low = 0.55 * spacing, high = 2 * support;
     for (int k = 0; k < 60; ++k) {
       const double middle = 0.5 * (low + high);
-      (layer(0.5 * spacing, middle) / layer(0, middle) < missing ? low : high) = middle;
+      const bool too_steep =
+          push(0.5 * spacing, middle) * missing.compression > missing.push * layer(0.5 * spacing, middle);
+      (too_steep ? low : high) = middle;
     }
     const double radius = wall.support = 0.5 * (low + high);
-    wall.sample_spacing = 0.5 * radius;
+    wall.sample_spacing = sample_distance * radius;
+    const double samples = sample_sum<Kernel>(radius, wall.sample_spacing);
+    wall.volume_factor = missing.compression * samples / layer(0.5 * spacing, radius);
 
     const double softening = 0.01 * radius * radius / 4;
     const bool monaghan = settings.viscosity_form == ViscosityForm::monaghan;
@@ -94,7 +146,7 @@ WallKernel make_wall_kernel(const SolverSettings& settings) {
       const double s = Kernel::gradient_scale(radius) * Kernel::shape(r / radius) / (r * r + softening);
       return monaghan ? 10 * s * 0.5 * s2 : 2 * s * r * r;
     });
-    wall.friction_factor = layer(0, radius) / (drag * 0.5 * spacing * spacing);
+    wall.friction_factor = samples / (wall.volume_factor * drag * 0.5 * spacing * spacing);
   });
   return wall;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sph/boundary_sampling.h"
+#include "sph/kernels.h"
 #include "sph/wall_guard.h"
 #include "sph/wall_kernel.h"
 #include "tests/sph/test_meshes.h"
@@ -94,28 +95,40 @@ TEST(BoundaryVolumes, MoreParticlesAtOnePlaceShareTheVolume) {
   EXPECT_NEAR(two[0], 0.5 * one[0], 1e-12);
 }
 
-TEST(WallKernel, LatticeAboveAPlaneHasTheRestDensity) {
+// A lattice half a spacing above a plane: what it lacks of a half space, the wall gives, in density and in push.
+TEST(WallKernel, LatticeAboveAPlaneIsInEquilibriumWithIt) {
   for (const double support_radius : {2.0, 2.5}) {
     SolverSettings settings;
     settings.spacing = 0.02;
     settings.support_radius = support_radius;
+    const double support = 0.02 * support_radius, kernel_sum = lattice_kernel_sum(settings);
     const WallKernel wall = make_wall_kernel(settings);
     const std::vector<Vec3> samples = sample_surface(sheet(0.3, 0), wall.sample_spacing);
     const std::vector<double> volumes = boundary_volumes(samples, settings.kernel, wall.support);
-    for (const Vec3& p : {Vec3(0, 0.01, 0), Vec3(0.003, 0.01, 0.007)}) {
-      // What is missing of the lattice behind the plane, against what the wall gives.
-      double missing = 0, given = 0;
-      for (int i = -4; i <= 4; ++i) {
-        for (int j = -4; j < 0; ++j) {
-          for (int k = -4; k <= 4; ++k) {
-            missing += 8e-6 * kernel_value(settings.kernel, 0.02 * std::hypot(i, j, k), 0.02 * support_radius);
-          }
+    // The stress of a lattice of equal pressure through a plane between its layers, in units of the pressure, by
+    // summing all pairs across the plane; each particle has the area of a spacing squared.
+    double missing = 0, stress = 0;
+    for (int i = -4; i <= 4; ++i) {
+      for (int j = -4; j < 0; ++j) {
+        for (int k = -4; k <= 4; ++k) {
+          const double r = 0.02 * std::hypot(i, j, k);
+          missing += 8e-6 * kernel_value(settings.kernel, r, support) / kernel_sum;
+          // A pair j layers apart crosses the plane from j places.
+          stress += -j * 2 * 8e-6 * -WendlandC2::derivative(r, support) * (-j * 0.02) / r * 0.02 / kernel_sum;
         }
       }
+    }
+    EXPECT_NEAR(stress * lattice_pressure_factor(settings), 1, 1e-6);
+    for (const Vec3& p : {Vec3(0, 0.01, 0), Vec3(0.003, 0.01, 0.007)}) {
+      double given = 0, push = 0;
       for (std::size_t b = 0; b < samples.size(); ++b) {
-        given += volumes[b] * kernel_value(settings.kernel, (samples[b] - p).norm(), wall.support);
+        const Vec3 d = p - samples[b];
+        const double volume = wall.volume_factor * volumes[b];
+        given += volume * kernel_value(settings.kernel, d.norm(), wall.support);
+        push -= volume * WendlandC2::derivative(d.norm(), wall.support) * d.y() / d.norm() * 0.02;
       }
-      EXPECT_NEAR(given, missing / lattice_kernel_sum(settings), 0.015);
+      EXPECT_NEAR(given, missing, 0.03 * missing);
+      EXPECT_NEAR(push, stress, 0.03 * stress);
     }
   }
 }

@@ -8,11 +8,17 @@
 namespace flowskin::tools {
 
 // Each is defined in the file of its name in tools/validation/cases/.
+ValidationCase hydrostatic_case();
 ValidationCase conservation_case();
+ValidationCase poiseuille_case();
+ValidationCase dam_break_case();
+ValidationCase taylor_green_case();
+ValidationCase gravity_current_case();
 
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases{
-      conservation_case(),
+      hydrostatic_case(),  conservation_case(),    poiseuille_case(),
+      taylor_green_case(), gravity_current_case(), dam_break_case(),
   };
   return cases;
 }
