@@ -196,6 +196,10 @@ Table<Scene> solver_keys() {
              "Fastest flow expected; 0: from heights, gravity and initial velocities."),
       key<S>("simulation.speed_of_sound", at(solver, &Settings::speed_of_sound), number(at_least(0, 1e5)), "m/s",
              "Speed of sound; 0: ten times the fastest flow expected."),
+      key<S>(
+          "simulation.background_pressure", at(solver, &Settings::background_pressure), number(at_least(0, 1e12)), "Pa",
+          "Added to the pressure everywhere, for fluid that fills its space: periodic boxes, pipes. 0: there are free "
+          "surfaces; they do not pull."),
       key<S>("simulation.xsph", at(solver, &Settings::xsph), number(at_least(0, 1)), "",
              "Share of XSPH smoothing in the velocity that moves particles."),
       key<S>("simulation.viscosity_form", at(solver, &Settings::viscosity_form), viscosity, "",

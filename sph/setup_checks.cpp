@@ -35,6 +35,8 @@ void check_settings(const SolverSettings& s) {
   require(s.gravity.allFinite(), "gravity", s.gravity.norm(), "finite numbers");
   require(not_negative(s.max_speed), "max_speed", s.max_speed, "0 (automatic) or a speed in m/s");
   require(not_negative(s.speed_of_sound), "speed_of_sound", s.speed_of_sound, "0 (automatic) or a speed in m/s");
+  require(not_negative(s.background_pressure), "background_pressure", s.background_pressure,
+          "0 (free surfaces) or a pressure in Pa");
   require(s.xsph >= 0 && s.xsph <= 1, "xsph", s.xsph, "0 to 1");
   require(s.density_diffusion >= 0 && s.density_diffusion <= 0.5, "density_diffusion", s.density_diffusion, "0 to 0.5");
   require(positive(s.acoustic_cfl), "acoustic_cfl", s.acoustic_cfl, "a number greater than 0");

@@ -11,15 +11,25 @@ namespace flowskin::tools {
 ValidationCase hydrostatic_case();
 ValidationCase conservation_case();
 ValidationCase poiseuille_case();
+ValidationCase film_case();
+ValidationCase symmetry_case();
 ValidationCase dam_break_case();
 ValidationCase taylor_green_case();
 ValidationCase gravity_current_case();
 
 const std::vector<ValidationCase>& validation_cases() {
+  // clang-format off
   static const std::vector<ValidationCase> cases{
-      hydrostatic_case(),  conservation_case(),    poiseuille_case(),
-      taylor_green_case(), gravity_current_case(), dam_break_case(),
+      hydrostatic_case(),
+      conservation_case(),
+      symmetry_case(),
+      poiseuille_case(),
+      film_case(),
+      taylor_green_case(),
+      gravity_current_case(),
+      dam_break_case(),
   };
+  // clang-format on
   return cases;
 }
 
