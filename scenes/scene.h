@@ -64,13 +64,16 @@ struct ParticlesSpec {
 
 struct TrackingSpec {
   bool enabled = true;
-  std::string velocity = "auto";   ///< A method, or auto: the best one for these particles.
-  std::string integrator = "rk2";  ///< euler, rk2, rk4
-  int steps_per_frame = 2;         ///< Particle states between two frames, one tracker step each.
-  double max_motion = 0.25;        ///< in effective radii
-  double radius = 2.5;             ///< Effective radius of a particle, in spacings.
-  double threshold = 0;            ///< 0: the one that puts a flat surface half a spacing outside the particles
-  double edge_length = 0.75;       ///< Edge length of an extracted mesh, in spacings.
+  std::string velocity = "auto";     ///< A method, or auto: the best one for these particles.
+  std::string integrator = "rk2";    ///< euler, rk2, rk4
+  int steps_per_frame = 2;           ///< Particle states between two frames, one tracker step each.
+  double max_motion = 0.25;          ///< in effective radii
+  double radius = 2.5;               ///< Effective radius of a particle, in spacings.
+  double threshold = 0;              ///< 0: the one that puts a flat surface half a spacing outside the particles
+  double edge_length = 0.75;         ///< Edge length of an extracted mesh, in spacings.
+  double curvature_edges = 0;        ///< Edges at most this multiple of the smaller radius of curvature; 0: all alike.
+  double smallest_part = 0;          ///< Parts of fluid or air that enclose less are small; in cubes of the spacing.
+  std::string small_parts = "keep";  ///< keep, drop, balls
   int fairing_iterations = 10;
   double fairing_stiffness = 0.3;            ///< 0 to 1
   std::string fairing_springs = "constant";  ///< constant, variable

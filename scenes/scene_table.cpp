@@ -263,6 +263,13 @@ Table<Scene> tracking_keys(const SceneVocabulary& vocabulary) {
              "Threshold T of the field; 0: the one that puts a flat surface half a spacing outside the particles."),
       key<S>("tracking.edge_length", at(tracking, &T::edge_length), number(at_least(0.05, 20)), "spacings",
              "Edge length of an extracted mesh."),
+      key<S>(
+          "tracking.curvature_edges", at(tracking, &T::curvature_edges), number(at_least(0, 100)), "radii of curvature",
+          "Edges are at most so long where the surface is sharply curved, down to half of edge_length; 0: all alike."),
+      key<S>("tracking.smallest_part", at(tracking, &T::smallest_part), number(at_least(0, 1e9)), "cubic spacings",
+             "Parts of fluid, and enclosed air, of a smaller volume are small; 0: none is."),
+      key<S>("tracking.small_parts", at(tracking, &T::small_parts), choice({"keep", "drop", "balls"}), "",
+             "What becomes of small parts: they stay as they are, are left out, or become balls of the same volume."),
       key<S>("tracking.fairing_iterations", at(tracking, &T::fairing_iterations), integer(0, 10000), "",
              "Iterations of fairing a step."),
       key<S>("tracking.fairing_stiffness", at(tracking, &T::fairing_stiffness), number(at_least(0, 1)), "",

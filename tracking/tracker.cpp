@@ -55,6 +55,10 @@ TrackerSettings filled_in(TrackerSettings settings) {
           "positive (m), or 0 for 0.75 spacings");
   require(settings.max_motion > 0, "max_motion", settings.max_motion, "positive (effective radii)");
   require(settings.fairing_iterations >= 0, "fairing_iterations", settings.fairing_iterations, "0 or more");
+  require(std::isfinite(settings.curvature_edges) && settings.curvature_edges >= 0, "curvature_edges",
+          settings.curvature_edges, "positive (radii of curvature), or 0 for edges that are all alike");
+  require(std::isfinite(settings.smallest_part) && settings.smallest_part >= 0, "smallest_part", settings.smallest_part,
+          "positive (m^3), or 0 for none");
   require(std::isfinite(settings.max_slip) && settings.max_slip >= 0, "max_slip", settings.max_slip,
           "positive (m), or 0 for no limit");
   require(settings.fairing_stiffness >= 0 && settings.fairing_stiffness <= 1, "fairing_stiffness",
@@ -235,6 +239,7 @@ class TrackerImpl {
     const std::vector<std::uint64_t> old_ids = mesh_.ids;
     RemeshSettings limits;
     limits.edge_length = settings_.edge_length;
+    limits.curvature = settings_.curvature_edges;
     const auto few = static_cast<int>(mesh_.positions.size()) / kFewIn;
     for (int pass = 0; pass < kRemeshingPasses; ++pass) {
       const RemeshReport done = remesh(*field_, limits, mesh_);
@@ -254,6 +259,7 @@ class TrackerImpl {
     const TopologyReport done = change_regions(projection);
     report_.regions = done.regions;
     report_.born = done.born;
+    report_.balls = done.balls;
     tolerated_ = std::min(tolerated_, done.stubborn);
     if (!settings_.guard || done.stubborn <= tolerated_) return;
     report_.reextracted = true;
@@ -269,6 +275,8 @@ class TrackerImpl {
     limits.edge_length = settings_.edge_length;
     limits.depth = kDisagreementDepth * settings_.edge_length;
     limits.local = settings_.topology;
+    limits.smallest_part = settings_.smallest_part;
+    limits.small_parts = settings_.small_parts;
     limits.material = material_settings();
     const TopologyReport done = change_topology(*field_, particles_, limits, mesh_, projection);
     if (done.changed()) update_topology(old_ids);

@@ -9,6 +9,7 @@
 #include "tracking/field/metaball_field.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/particles.h"
+#include "tracking/topology/small_parts.h"
 #include "tracking/velocity/confidence.h"
 #include "tracking/velocity/velocity_method.h"
 
@@ -24,10 +25,13 @@ struct TrackerSettings {
   int fairing_iterations = 10;     ///< [FMM13, 3.4]
   double fairing_stiffness = 0.3;  ///< Share of the way to the spring equilibrium an iteration goes, 0 to 1.
   bool variable_springs = false;   ///< Fairing is soft where the field determines the velocity well.
+  double curvature_edges = 0;      ///< Edges at most this multiple of the smaller radius of curvature; 0: all alike.
   bool remeshing = true;           ///< Split, collapse and flip edges of a stretching mesh; false: as in the paper.
-  double max_slip = 0;   ///< The texture slips off the particles' material by at most this (m); 0: any distance.
-  bool topology = true;  ///< Replace the regions where mesh and field disagree.
-  bool guard = true;     ///< Replace the whole mesh where that of regions is off, or does not work.
+  double max_slip = 0;       ///< The texture slips off the particles' material by at most this (m); 0: any distance.
+  double smallest_part = 0;  ///< Parts of fluid or air that enclose less (m^3) are small; 0: none is.
+  SmallParts small_parts = SmallParts::keep;  ///< What becomes of them.
+  bool topology = true;                       ///< Replace the regions where mesh and field disagree.
+  bool guard = true;  ///< Replace the whole mesh where that of regions is off, or does not work.
 };
 
 /// What happened in the last call of Tracker::advance, and how well the mesh fits now.
@@ -41,6 +45,7 @@ struct TrackerReport {
   int regions = 0;                           ///< Replaced where mesh and field disagreed.
   int held_back = 0;                         ///< Vertices whose rest position was held back by max_slip.
   int born = 0;                              ///< Vertices of the replaced regions that are new.
+  int balls = 0;                             ///< Small parts that were made balls.
   int components = 0;                        ///< Of the mesh.
   double volume = 0;                         ///< m^3
   double area = 0;                           ///< m^2

@@ -162,7 +162,7 @@ TEST(Remesh, TargetsFollowTheCurvature) {
     remesh(body.field, same, plain);
   }
   EXPECT_EQ(test::joined(mesh_problems(fine)), "");
-  EXPECT_GT(fine.positions.size(), 1.1 * plain.positions.size());
+  EXPECT_GT(double(fine.positions.size()), 1.1 * double(plain.positions.size()));
 }
 
 }  // namespace

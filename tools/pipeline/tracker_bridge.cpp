@@ -32,11 +32,16 @@ tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
                                                    : tracking::Integrator::rk2;
   settings.max_motion = spec.max_motion;
   settings.edge_length = spec.edge_length * spacing;
+  settings.curvature_edges = spec.curvature_edges;
+  settings.smallest_part = spec.smallest_part * spacing * spacing * spacing;
+  settings.small_parts = spec.small_parts == "drop"    ? tracking::SmallParts::drop
+                         : spec.small_parts == "balls" ? tracking::SmallParts::balls
+                                                       : tracking::SmallParts::keep;
   settings.fairing_iterations = spec.fairing_iterations;
   settings.fairing_stiffness = spec.fairing_stiffness;
   settings.variable_springs = spec.fairing_springs == "variable";
   settings.remeshing = spec.remeshing;
-  settings.max_slip = spec.max_slip * scene.particles.spacing;
+  settings.max_slip = spec.max_slip * spacing;
   settings.topology = spec.topology;
   settings.guard = spec.guard;
   return settings;
