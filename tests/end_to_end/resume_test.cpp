@@ -75,7 +75,7 @@ TEST_F(Resume, AfterCtrlCAtRandomMoments) {
     const Result result = run_flowskin_until(
         arguments(out, more), [&] { return now() > due; }, attempt % 3 == 2 ? SIGTERM : SIGINT);
     if (result.status == 0) break;
-    if (result.status == 128 + SIGINT && result.output.empty()) continue;  // before the program was up
+    if (result.output.empty()) continue;  // killed before the program caught signals
     ++stops;
     expect(result, attempt % 3 == 2 ? 143 : 130, {"interrupted by SIG", "--resume", "frames 0 to"});
   }
