@@ -63,6 +63,7 @@ WallGuard::Crossing WallGuard::gap_at(const Vec3& p, const std::vector<std::uint
 
 WallGuard::Crossing WallGuard::enter_gap(const Vec3& from, const Vec3& to,
                                          const std::vector<std::uint32_t>& candidates) const {
+  if (gap_cells_.empty()) return {};
   const Vec3 way = to - from;
   const double length = way.norm();
   // Cells with a gap reach farther than a path.
