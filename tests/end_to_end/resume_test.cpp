@@ -104,8 +104,8 @@ TEST_F(Resume, AfterKillAtRandomMoments) {
     // Lost are at most the frames since the last save.
     if (fs::exists(out / "frames.csv")) {
       const int last = int(end_to_end::Table(out / "frames.csv").rows()) - 1;
-      const int due = last / 3 * 3 - (last % 3 == 0 ? 3 : 0);  // 0: the first frame, which needs no save
-      EXPECT_GE(std::max(newest_checkpoint(out), 0), due) << "after frame " << last;
+      const int saved_by_then = last / 3 * 3 - (last % 3 == 0 ? 3 : 0);  // 0: the first frame, which needs no save
+      EXPECT_GE(std::max(newest_checkpoint(out), 0), saved_by_then) << "after frame " << last;
     }
   }
   EXPECT_GE(resumed, 1);
