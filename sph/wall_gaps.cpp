@@ -14,6 +14,11 @@ constexpr double on_wall = 0.1;     // a middle between two samples nearer to a 
 constexpr double path_pieces = 20;  // pieces of a path, in a gap's width: so finely it is looked at
 constexpr double opposite = -0.5;   // cosine: walls in directions more than 120 degrees apart are opposite each other
 
+bool is_near(const WallGuard::Triangle& t, const Vec3& p, double distance) {
+  if (std::abs(t.normal.dot(p - t.a)) > distance) return false;
+  return (closest_on_triangle(p, t.a, t.b, t.c, t.normal) - p).norm() < distance;
+}
+
 }  // namespace
 
 // Where a point touches walls: the nearest point of each triangle within reach.
@@ -25,10 +30,7 @@ struct WallGuard::Touch {
 
 bool WallGuard::is_nearest_around(const Touch& touch, const std::vector<Touch>& touches) const {
   return std::none_of(touches.begin(), touches.end(), [&](const Touch& other) {
-    if (!(other.distance < touch.distance)) return false;
-    const Triangle& t = triangles_[other.triangle];
-    if (std::abs(t.normal.dot(touch.place - t.a)) > hair()) return false;
-    return (closest_on_triangle(touch.place, t.a, t.b, t.c, t.normal) - touch.place).norm() < hair();
+    return other.distance < touch.distance && is_near(triangles_[other.triangle], touch.place, hair());
   });
 }
 
@@ -131,11 +133,8 @@ void WallGuard::find_gaps(const std::vector<Vec3>& samples, double sample_spacin
 }
 
 bool WallGuard::is_on_wall(const Vec3& p, double distance, const std::vector<std::uint32_t>& candidates) const {
-  return std::any_of(candidates.begin(), candidates.end(), [&](std::uint32_t k) {
-    const Triangle& t = triangles_[k];
-    if (std::abs(t.normal.dot(p - t.a)) > distance) return false;
-    return (closest_on_triangle(p, t.a, t.b, t.c, t.normal) - p).norm() < distance;
-  });
+  return std::any_of(candidates.begin(), candidates.end(),
+                     [&](std::uint32_t k) { return is_near(triangles_[k], p, distance); });
 }
 
 bool WallGuard::collect(const Vec3& low, const Vec3& high, double margin, std::vector<std::uint32_t>& found) const {

@@ -22,10 +22,8 @@ sph::SimulationSetup channel(const ChannelFlow& flow, int across) {
   setup.settings.max_speed = top_speed;
   // Steps of the explicit scheme, so that the error is that of space alone.
   setup.settings.viscosity_solver = sph::ViscositySolver::explicit_steps;
-  setup.settings.domain = {{0, 0, 0}, {length, 0, length}};
-  setup.settings.periodic = {true, false, true};
+  add_endless_floor(length, setup);
   setup.bodies.push_back(block_body({0, 0, 0}, {length, width, length}));
-  setup.boundaries.push_back(plane_wall({0, 0, 0}, {0, 0, length}, {length, 0, 0}, 0));
   setup.boundaries.push_back(plane_wall({0, width, 0}, {length, 0, 0}, {0, 0, length}, 0));
   setup.boundaries.back().surface_velocity = {flow.wall_speed * top_speed, 0, 0};
   return setup;

@@ -42,6 +42,12 @@ sph::Boundary plane_wall(const Vec3& corner, const Vec3& edge_a, const Vec3& edg
   return wall;
 }
 
+void add_endless_floor(double length, sph::SimulationSetup& setup) {
+  setup.settings.domain = {{0, 0, 0}, {length, 0, length}};
+  setup.settings.periodic = {true, false, true};
+  setup.boundaries.push_back(plane_wall({0, 0, 0}, {0, 0, length}, {length, 0, 0}, 0));
+}
+
 LayerMeans layer_means(const sph::FluidState& state, double low, double thickness,
                        const std::function<double(std::size_t)>& height,
                        const std::function<double(std::size_t)>& value) {

@@ -20,6 +20,9 @@ sph::FluidBody ball_body(const sph::Vec3& center, double radius, const sph::Vec3
 /// A parallelogram as a wall: a corner and two edges (m). `slip`: 0 no-slip, 1 free slip.
 sph::Boundary plane_wall(const sph::Vec3& corner, const sph::Vec3& edge_a, const sph::Vec3& edge_b, double slip);
 
+/// Makes the setup endless along x and z, with a period of `length` (m), over a no-slip floor at y = 0.
+void add_endless_floor(double length, sph::SimulationSetup& setup);
+
 /// A quantity of the particles, averaged over layers of equal thickness.
 struct LayerMeans {
   std::vector<double> centers;  ///< Mean height of the particles of the layer (m).

@@ -9,11 +9,6 @@ namespace {
 
 using Cell = CellSet::Cell;
 
-Cell cell_at(const Vec3& coordinates) {
-  return {static_cast<int>(std::floor(coordinates[0])), static_cast<int>(std::floor(coordinates[1])),
-          static_cast<int>(std::floor(coordinates[2]))};
-}
-
 template <class Visit>
 void for_each_cell(const Cell& low, const Cell& high, const Visit& visit) {
   for (int i = low[0]; i <= high[0]; ++i) {
@@ -24,6 +19,11 @@ void for_each_cell(const Cell& low, const Cell& high, const Visit& visit) {
 }
 
 }  // namespace
+
+Cell cell_at(const Vec3& coordinates) {
+  return {static_cast<int>(std::floor(coordinates[0])), static_cast<int>(std::floor(coordinates[1])),
+          static_cast<int>(std::floor(coordinates[2]))};
+}
 
 CellSet::CellSet(std::vector<Cell> cells) : cells_(std::move(cells)) {
   std::sort(cells_.begin(), cells_.end());

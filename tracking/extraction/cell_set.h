@@ -34,6 +34,9 @@ class CellSet {
   Cell low_{}, high_{};
 };
 
+/// The cell that a place in grid coordinates lies in.
+CellSet::Cell cell_at(const Vec3& coordinates);
+
 /// Whether a box in grid coordinates (see SparseGrid::coordinates) meets one of the cells.
 bool meets(const CellSet& cells, const Vec3& low, const Vec3& high);
 

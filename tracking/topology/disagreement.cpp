@@ -158,8 +158,7 @@ std::vector<Cell> unresolved_cells(const SparseGrid& grid, double reach, const s
   for (std::ptrdiff_t v = 0; v < std::ssize(is_unresolved); ++v) {
     const Vec3 x = grid.coordinates(positions[v]);
     const Vec3 floor = x.array().floor();
-    const Cell cell = {static_cast<int>(floor[0]), static_cast<int>(floor[1]), static_cast<int>(floor[2])};
-    is_unresolved[v] = !(distance_in_cell(grid, cell, x - floor) < reach);
+    is_unresolved[v] = !(distance_in_cell(grid, cell_at(x), x - floor) < reach);
   }
   std::vector<Cell> cells;
   for (std::size_t v = 0; v < positions.size(); ++v) {

@@ -261,8 +261,8 @@ void improve_patch(const FieldGrid& fresh, const MeshToMend& whole, const std::v
   if (finish != Finish::raw) {
     collapse_short_edges(edge_length, mesh);
     flip_towards_delaunay(mesh);
+    keep_old_vertices(fresh, whole, patch, mesh);
   }
-  if (finish != Finish::raw) keep_old_vertices(fresh, whole, patch, mesh);
   mesh.hand_over(patch);
 }
 

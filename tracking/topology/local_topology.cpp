@@ -39,8 +39,7 @@ void LocalTopology::add(const SparseGrid& grid, double sign, const std::vector<V
     }
   }
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    const Vec3 x = grid.coordinates(positions[v]).array().floor();
-    defects_.push_back({{static_cast<int>(x[0]), static_cast<int>(x[1]), static_cast<int>(x[2])}, sign * missing[v]});
+    defects_.push_back({cell_at(grid.coordinates(positions[v])), sign * missing[v]});
   }
 }
 

@@ -18,10 +18,8 @@ sph::SimulationSetup film(int layers, double viscosity) {
   const double spacing = depth / layers, length = 6 * spacing;
   sph::SimulationSetup setup = flow_setup(spacing, viscosity, gravity * Vec3(std::sin(angle), -std::cos(angle), 0));
   setup.settings.max_speed = std::sqrt(2 * gravity * depth);
-  setup.settings.domain = {{0, 0, 0}, {length, 0, length}};
-  setup.settings.periodic = {true, false, true};
+  add_endless_floor(length, setup);
   setup.bodies.push_back(block_body({0, 0, 0}, {length, depth, length}));
-  setup.boundaries.push_back(plane_wall({0, 0, 0}, {0, 0, length}, {length, 0, 0}, 0));
   return setup;
 }
 

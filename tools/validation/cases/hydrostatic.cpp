@@ -20,10 +20,8 @@ constexpr double height = 1, gravity = 9.81, viscosity = 0.5;
 sph::SimulationSetup column(int layers) {
   const double spacing = height / layers, width = 8 * spacing;
   sph::SimulationSetup setup = flow_setup(spacing, viscosity, {0, -gravity, 0});
-  setup.settings.domain = {{0, 0, 0}, {width, 0, width}};
-  setup.settings.periodic = {true, false, true};
+  add_endless_floor(width, setup);
   setup.bodies.push_back(block_body({0, 0, 0}, {width, height, width}));
-  setup.boundaries.push_back(plane_wall({0, 0, 0}, {0, 0, width}, {width, 0, 0}, 0));
   return setup;
 }
 

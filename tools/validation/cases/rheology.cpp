@@ -63,10 +63,8 @@ sph::SimulationSetup film_setup(const Film& film, int layers) {
   sph::SimulationSetup setup = flow_setup(spacing, 1, {drive, -0.3, 0});
   setup.settings.viscosity_solver = film.solver;
   setup.settings.max_speed = 0.4;
-  setup.settings.domain = {{0, 0, 0}, {width, 0, width}};
-  setup.settings.periodic = {true, false, true};
+  add_endless_floor(width, setup);
   setup.fluids = film.fluids;
-  setup.boundaries.push_back(plane_wall({0, 0, 0}, {0, 0, width}, {width, 0, 0}, 0));
   const auto parts = static_cast<double>(film.fluids.size());
   for (std::size_t k = 0; k < film.fluids.size(); ++k) {
     const double low = depth * static_cast<double>(k) / parts, high = depth * static_cast<double>(k + 1) / parts;
