@@ -249,6 +249,11 @@ Table<Scene> solver_keys() {
              "Coefficient of the density diffusion; 0: none.")
           .only_for("simulation.density_method \"continuity\"",
                     [](const S& s) { return s.solver.density_method == sph::DensityMethod::continuity; }),
+      key<S>("simulation.particle_shifting", at(solver, &Settings::particle_shifting), number(at_least(0, 2)), "",
+             "Moves particles to even distances, for a constant amount of fluid that fills its space, with suction "
+             "and without background pressure; 1 is a good value, 0: none.")
+          .only_for("simulation.density_method \"continuity\"",
+                    [](const S& s) { return s.solver.density_method == sph::DensityMethod::continuity; }),
       key<S>("simulation.acoustic_cfl", at(solver, &Settings::acoustic_cfl), number(above(0, 2)), "",
              "Time step at most this times h / (c + v): h smoothing length, c speed of sound, v speed."),
       key<S>("simulation.viscous_cfl", at(solver, &Settings::viscous_cfl), number(above(0, 1)), "",

@@ -17,11 +17,11 @@ Real clamped_pressure(Real e) {
 }
 
 /// p / (rho_0 c^2) of a fluid without free surfaces under a background pressure (in the same unit): below the rest
-/// density the pressure falls, down to zero.
+/// density the pressure falls, down to `least`.
 template <typename Real>
-Real pressure_with_background(Real e, Real background) {
+Real pressure_with_background(Real e, Real background, Real least = 0) {
   const Real pressure = tait_pressure_over_bulk(e) / Real(7) + background;
-  return pressure > 0 ? pressure : Real(0);
+  return pressure > least ? pressure : least;
 }
 
 }  // namespace flowskin::sph

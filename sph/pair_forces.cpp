@@ -28,11 +28,14 @@ PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wa
   pressure_scale = static_cast<float>(gradient * c * c * lattice_pressure_factor(s));
   background = static_cast<float>(s.background_pressure / (s.rest_density * c * c));
   // Without a free surface nothing is missing where the density is low.
-  least_compression = s.background_pressure > 0 ? -0.99F : 0.0F;
+  least_compression = s.background_pressure > 0 || s.particle_shifting > 0 ? -0.99F : 0.0F;
+  // Shifting closes the voids that suction opens.
+  least_pressure = s.particle_shifting > 0 ? -1e9F : 0.0F;
   diffusion = static_cast<float>(2 * s.density_diffusion * h * c * gradient);
   viscosity = static_cast<float>((variable_viscosity ? 1 : s.viscosity) * lattice_viscosity_scale(s));
   for (int a = 0; a < 3; ++a) compression_gradient[a] = static_cast<float>(s.gravity[a] / (c * c));
   xsph = static_cast<float>(s.xsph) * kernel_scale;
+  shift_scale = static_cast<float>(s.particle_shifting * support * gradient);
   const double wall_scale = gradient_scale(wall.support) * std::pow(wall.support, 3);
   wall_inverse_support = static_cast<float>(1 / wall.support);
   wall_gradient = static_cast<float>(wall_scale);
@@ -50,8 +53,8 @@ PairCoefficients::PairCoefficients(const SolverSettings& s, const WallKernel& wa
 
 float PairCoefficients::pack_pressure(float compression) const {
   const float density_ratio = 1 + compression;
-  const float pressure =
-      least_compression < 0 ? pressure_with_background(compression, background) : clamped_pressure(compression);
+  const float pressure = least_compression < 0 ? pressure_with_background(compression, background, least_pressure)
+                                               : clamped_pressure(compression);
   return pressure_scale * pressure / (density_ratio * density_ratio);
 }
 
@@ -88,7 +91,7 @@ struct Sums {
   Float8 ax{}, ay{}, az{};
   Float8 divergence{}, wall_divergence{};  // sums of s (v_ij . x_ij)
   Float8 diffusion{};
-  Float8 sx{}, sy{}, sz{};  // XSPH
+  Float8 sx{}, sy{}, sz{};  // XSPH or shifting
   Float8 wall_distance2 = broadcast(1e18F);
   Float8 wx{}, wy{}, wz{}, wall_sum{};  // push of walls, and what they add to the density
   Float8 fx{}, fy{}, fz{};              // friction on walls ...
@@ -152,7 +155,10 @@ struct Viscous {
   static constexpr bool viscous = true, monaghan = monaghan_form, variable = with_variable;
 };
 
-template <typename Kernel, typename Viscosity, bool continuity, bool with_xsph, bool periodic>
+// What moves particles besides their velocity: nothing, XSPH smoothing, or the shift to even distances.
+enum class Drift { none, smoothed, shifted };
+
+template <typename Kernel, typename Viscosity, bool continuity, Drift drift, bool periodic>
 inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidPack& j, const Float8& own_viscosity,
                       float viscosity, Sums& sums) {
   const auto [dx, dy, dz] = c.image.difference<periodic>(i.x, i.y, i.z, j);
@@ -182,7 +188,12 @@ inline void add_fluid(const SplatCoefficients& c, const Targets& i, const FluidP
     sums.ay += f * dy - g * uy;
     sums.az += f * dz - g * uz;
   }
-  if constexpr (with_xsph) {
+  if constexpr (drift == Drift::shifted) {
+    sums.sx += s * dx;
+    sums.sy += s * dy;
+    sums.sz += s * dz;
+  }
+  if constexpr (drift == Drift::smoothed) {
     const Float8 w = Kernel::scaled_value(q);
     sums.sx -= w * ux;
     sums.sy -= w * uy;
@@ -225,7 +236,7 @@ int piece_of(std::size_t clusters) {
   return static_cast<int>(1 + clusters / (10 * static_cast<std::size_t>(omp_get_max_threads())));
 }
 
-template <typename Kernel, typename Viscosity, bool continuity, bool with_xsph, bool periodic>
+template <typename Kernel, typename Viscosity, bool continuity, Drift drift, bool periodic>
 void run_forces(const PairCoefficients& coefficients, const PairData& data) {
   const SplatCoefficients c(coefficients);
   const PointClusters& clusters = *data.clusters;
@@ -243,8 +254,7 @@ void run_forces(const PairCoefficients& coefficients, const PairData& data) {
       if (part > 0) targets.hide(&data.fluid[first], count, hidden, coefficients.away);
       for (const std::uint32_t j : sources) {
         const float other = variable ? data.viscosities[j] : 0.0F;
-        add_fluid<Kernel, Viscosity, continuity, with_xsph, periodic>(c, targets, data.fluid[j], viscosity, other,
-                                                                      sums);
+        add_fluid<Kernel, Viscosity, continuity, drift, periodic>(c, targets, data.fluid[j], viscosity, other, sums);
       }
     }
     if (parts > 1) targets.hide(&data.fluid[first], count, 0, coefficients.away);
@@ -262,8 +272,14 @@ void run_forces(const PairCoefficients& coefficients, const PairData& data) {
                          coefficients.wall_gradient * sums.wall_divergence[k];
       data.rates[first + k] = {sums.ax[k], sums.ay[k], sums.az[k], rate};
       data.wall_distances[first + k] = std::sqrt(sums.wall_distance2[k]);
-      if constexpr (with_xsph) {
-        data.shifts[first + k] = coefficients.xsph * Eigen::Vector3f(sums.sx[k], sums.sy[k], sums.sz[k]);
+      const Eigen::Vector3f drift_sum(sums.sx[k], sums.sy[k], sums.sz[k]);
+      if constexpr (drift == Drift::smoothed) data.shifts[first + k] = coefficients.xsph * drift_sum;
+      if constexpr (drift == Drift::shifted) {
+        // As an even pressure would push: walls hold a lattice beside them in place, and half of a pair's force is one
+        // particle's.
+        const Eigen::Vector3f wall_push(sums.wx[k], sums.wy[k], sums.wz[k]);
+        data.shifts[first + k] =
+            data.fastest * coefficients.shift_scale * (drift_sum + 0.5F * coefficients.wall_pressure * wall_push);
       }
     }
   }
@@ -311,6 +327,13 @@ void with_viscosity(const PairData& data, const SolverSettings& settings, Functi
   with_bool(!data.viscosities.empty(), [&](auto variable) { function(Viscous<true, variable.value>{}); });
 }
 
+template <typename Function>
+void with_drift(const PairData& data, const SolverSettings& settings, Function function) {
+  if (data.shifts.empty()) return function(std::integral_constant<Drift, Drift::none>{});
+  if (settings.xsph > 0) return function(std::integral_constant<Drift, Drift::smoothed>{});
+  function(std::integral_constant<Drift, Drift::shifted>{});
+}
+
 }  // namespace
 
 void sum_densities(const PairCoefficients& coefficients, const SolverSettings& settings, const PairData& data) {
@@ -324,9 +347,9 @@ void compute_forces(const PairCoefficients& coefficients, const SolverSettings& 
   with_kernel(settings.kernel, [&](auto kernel) {
     with_viscosity(data, settings, [&](auto viscosity) {
       with_bool(settings.density_method == DensityMethod::continuity, [&](auto continuity) {
-        with_bool(!data.shifts.empty(), [&](auto xsph) {
+        with_drift(data, settings, [&](auto drift) {
           with_bool(is_periodic(settings), [&](auto periodic) {
-            run_forces<decltype(kernel), decltype(viscosity), continuity.value, xsph.value, periodic.value>(
+            run_forces<decltype(kernel), decltype(viscosity), continuity.value, drift.value, periodic.value>(
                 coefficients, data);
           });
         });

@@ -37,11 +37,13 @@ struct PairCoefficients {
   float kernel_gradient = 0;           ///< V G
   float pressure_scale = 0;            ///< V G c^2
   float background = 0;                ///< Background pressure / (rho_0 c^2)
+  float least_pressure = 0;            ///< In the same unit; without limit where particles are shifted
   float least_compression = 0;         ///< Of the summed density: 0 where there are free surfaces.
   float diffusion = 0;                 ///< 2 delta h c V G
   float viscosity = 0;                 ///< nu times lattice_viscosity_scale(), 1/(m^2 s)
   float compression_gradient[3] = {};  ///< Slope of the compression of fluid at rest: g / c^2 (1/m)
   float xsph = 0;                      ///< xsph V / R^3
+  float shift_scale = 0;               ///< particle_shifting R V G (1/m)
   float wall_inverse_support = 0;      ///< 1 / R_b
   float wall_gradient = 0;             ///< G_b R_b^3
   float wall_pressure = 0;             ///< G_b R_b^3 / (V G)
@@ -69,9 +71,10 @@ struct PairData {
   float time_step;                    ///< s; makes the friction on walls stable at any viscosity
   std::span<ParticleRates> rates;     ///< out
   std::span<float> wall_distances;    ///< out: distance to the nearest boundary particle in the lists, else 1e9 (m)
-  std::span<Eigen::Vector3f> shifts;  ///< out: XSPH velocity change (m/s); empty where XSPH is off
+  std::span<Eigen::Vector3f> shifts;  ///< out: XSPH or shifting velocity (m/s); empty where both are off
   bool viscous = true;                ///< false: no viscosity and friction; ImplicitViscosity adds them
   std::span<const float> viscosities = {};  ///< Of each particle (m^2/s); empty: all the same
+  float fastest = 0;                        ///< Speed of the fastest particle (m/s), which scales the shifting
 };
 
 inline bool is_periodic(const SolverSettings& settings) {

@@ -21,7 +21,7 @@ struct ParticleArrays {
   std::vector<FluidPack> packs;
   std::vector<ParticleRates> rates;
   std::vector<float> wall_distances;    ///< m; see PairData
-  std::vector<Eigen::Vector3f> shifts;  ///< XSPH; empty where it is off
+  std::vector<Eigen::Vector3f> shifts;  ///< XSPH or shifting; empty where both are off
   std::vector<std::uint8_t> fluids;     ///< Index of the fluid; empty where there is only one
   std::vector<float> viscosities;       ///< m^2/s; empty where all have the same at all times
 

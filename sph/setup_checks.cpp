@@ -44,6 +44,7 @@ void check_settings(const SolverSettings& s) {
   require(not_negative(s.background_pressure), "background_pressure", s.background_pressure,
           "0 (free surfaces) or a pressure in Pa");
   require(s.xsph >= 0 && s.xsph <= 1, "xsph", s.xsph, "0 to 1");
+  require(s.particle_shifting >= 0 && s.particle_shifting <= 2, "particle_shifting", s.particle_shifting, "0 to 2");
   require(s.density_diffusion >= 0 && s.density_diffusion <= 0.5, "density_diffusion", s.density_diffusion, "0 to 0.5");
   require(positive(s.acoustic_cfl), "acoustic_cfl", s.acoustic_cfl, "a number greater than 0");
   require(positive(s.viscous_cfl), "viscous_cfl", s.viscous_cfl, "a number greater than 0");
@@ -134,10 +135,25 @@ void check_fluids(const SimulationSetup& setup) {
   }
 }
 
+void check_shifting(const SimulationSetup& setup) {
+  const SolverSettings& s = setup.settings;
+  if (s.particle_shifting == 0) return;
+  const auto expect = [](bool holds, const char* what) {
+    if (!holds) throw SettingsError(std::string("particle_shifting is on: ") + what);
+  };
+  expect(s.density_method == DensityMethod::continuity, "expected density_method \"continuity\"");
+  expect(s.xsph == 0, "expected xsph 0; only one of the two can move the particles");
+  expect(s.surface_tension == 0,
+         "it is for fluid that fills its space, which has no surface: expected surface_tension 0");
+  expect(setup.emitters.empty() && setup.sinks.empty(),
+         "it is for a constant amount of fluid: expected neither emitters nor sinks");
+}
+
 }  // namespace
 
 void check_setup(const SimulationSetup& setup) {
   check_settings(setup.settings);
+  check_shifting(setup);
   check_fluids(setup);
   check_domain(setup.settings);
   if (setup.bodies.empty() && setup.emitters.empty()) {

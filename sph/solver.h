@@ -71,6 +71,12 @@ struct SolverSettings {
   /// suction.
   double background_pressure = 0;
   double xsph = 0;  ///< Share of XSPH smoothing in the velocity that moves particles, 0 to 1.
+  /// Particles move along -grad C, C the concentration of particles, to even distances: with the velocity
+  /// -particle_shifting R u grad C, R the support radius and u the fastest particle's speed [Lind et al. 2012; Sun et
+  /// al. 2019]; 1 is a good value. Only for a constant amount of fluid that fills its space, with
+  /// DensityMethod::continuity: the mean pressure is held at the background pressure, and suction has no limit. 0:
+  /// none.
+  double particle_shifting = 0;
   DensityMethod density_method = DensityMethod::summation;
   double density_diffusion = 0.1;  ///< Continuity density only: coefficient delta of its diffusion; 0: none.
   double acoustic_cfl = 0.4;       ///< dt <= acoustic_cfl h / (c + |v|), h the smoothing length

@@ -78,6 +78,9 @@ SolverSettings complete_settings(const SimulationSetup& setup, const std::vector
   return with_automatic_values(setup, bounding_box(points), speed);
 }
 
+// Whether something moves the particles besides their velocity.
+bool drifts(const SolverSettings& settings) { return settings.xsph > 0 || settings.particle_shifting > 0; }
+
 }  // namespace
 
 SolverImpl::SolverImpl(SimulationSetup setup)
@@ -106,7 +109,7 @@ SolverImpl::SolverImpl(SimulationSetup setup)
   // Where all axes are periodic there is no place for what is hidden (PairCoefficients::away).
   sees_walls_ = boundary_.has_thin() && !(periodic_.along(0) && periodic_.along(1) && periodic_.along(2));
 
-  particles_.reserve(points.size(), settings_.xsph > 0, fluids_.size() > 1, !fluids_.empty());
+  particles_.reserve(points.size(), drifts(settings_), fluids_.size() > 1, !fluids_.empty());
   for (const FluidPoint& p : points)
     add_particle(p.position, p.velocity, p.position, index_of(fluids_, setup.bodies[p.body].fluid));
   pour_emitters();
@@ -253,7 +256,7 @@ void SolverImpl::kick_and_drift(double dt) {
 
 void SolverImpl::add_particle(const Vec3& position, const Vec3& velocity, const Vec3& rest_position,
                               std::size_t fluid) {
-  particles_.append(next_id_++, position, velocity, rest_position, settings_.xsph > 0);
+  particles_.append(next_id_++, position, velocity, rest_position, drifts(settings_));
   if (fluids_.size() > 1) particles_.fluids.push_back(static_cast<std::uint8_t>(fluid));
   if (fluids_.empty()) return;
   const double viscosity = viscosity_at(fluids_[fluid], settings_.rest_density, 0);
@@ -425,12 +428,12 @@ void SolverImpl::collect_wall_triangles() {
 
 void SolverImpl::evaluate_forces() {
   const Stopwatch watch(statistics_.seconds_forces);
-  const PairData data{particles_.packs,      &clusters_,
-                      &fluid_lists_,         boundary_.packs(),
-                      &wall_lists_,          static_cast<float>(statistics_.last_step.step),
-                      particles_.rates,      particles_.wall_distances,
-                      particles_.shifts,     !is_implicit(),
-                      particles_.viscosities};
+  const PairData data{particles_.packs,       &clusters_,
+                      &fluid_lists_,          boundary_.packs(),
+                      &wall_lists_,           static_cast<float>(statistics_.last_step.step),
+                      particles_.rates,       particles_.wall_distances,
+                      particles_.shifts,      !is_implicit(),
+                      particles_.viscosities, static_cast<float>(greatest_speed_)};
   if (shear_dependent_) update_viscosities(data);
   if (settings_.density_method == DensityMethod::summation) sum_densities(coefficients_, settings_, data);
   compute_forces(coefficients_, settings_, data);
@@ -482,9 +485,18 @@ void SolverImpl::finish_step(double dt) {
     acceleration2 = std::max(acceleration2, a2);
     if (v2 > speed_limit2 || compression > greatest_compression) worst = std::min(worst, i);
   }
+  if (settings_.particle_shifting > 0) take_out_mean_compression();
   greatest_speed_ = std::sqrt(speed2);
   greatest_acceleration_ = std::sqrt(acceleration2);
   if (worst < particles_.size()) throw_blow_up(worst);
+}
+
+void SolverImpl::take_out_mean_compression() {
+  // In the order of the particles: the same bytes at any number of threads.
+  double sum = 0;
+  for (const float compression : particles_.compressions) sum += static_cast<double>(compression);
+  const auto mean = static_cast<float>(sum / static_cast<double>(std::max<std::size_t>(1, particles_.size())));
+  for (float& compression : particles_.compressions) compression -= mean;
 }
 
 void SolverImpl::throw_blow_up(std::size_t i) const {

@@ -79,6 +79,9 @@ class SolverImpl {
   void update_viscosities(const PairData& data);
   /// Second half of the kick, the compression, and the limits of what is believable.
   void finish_step(double dt);
+  /// Where the fluid fills its space its volume cannot change, but the continuity equation drifts as the particles'
+  /// order changes: the drift of the mean is not pressure.
+  void take_out_mean_compression();
   [[noreturn]] void throw_blow_up(std::size_t particle) const;
   const JetEmitter* nozzle_around(const Vec3& p) const;
 

@@ -137,6 +137,20 @@ std::vector<Case> cases() {
          setup.settings.density_method = DensityMethod::continuity;
          return setup;
        }},
+      {"Shifting",
+       [] {
+         SimulationSetup setup = block_setup(0.025, {0, 0, 0}, {0.2, 0.2, 0.2});
+         setup.bodies[0].block.max.y() = 0.1;
+         setup.bodies[0].velocity = {1, 0, 0.3};
+         setup.bodies.push_back(setup.bodies[0]);
+         setup.bodies[1].block = {{0, 0.1, 0}, {0.2, 0.2, 0.2}};
+         setup.bodies[1].velocity = {-1, 0.2, 0};
+         setup.settings.domain = {{0, 0, 0}, {0.2, 0.2, 0.2}};
+         setup.settings.periodic = {true, true, true};
+         setup.settings.density_method = DensityMethod::continuity;
+         setup.settings.particle_shifting = 1;
+         return setup;
+       }},
       {"MorrisViscosityAndCubicSpline",
        [] {
          SimulationSetup setup = splash();
