@@ -1,6 +1,7 @@
 // A block of a fluid with a yield stress that slumps on a plane and stops: its final shape.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tools/validation/flow_setup.h"
 #include "tools/validation/validation_case.h"
@@ -15,12 +16,29 @@ constexpr double gravity = 9.81;      // m/s^2
 constexpr double yield_stress = 140;  // Pa
 constexpr double end = 2;             // s
 
-// Where a shallow heap has stopped, pressure gradient and yield stress balance, rho g h dh/dx = -tau_y [Liu and Mei
-// 1989], so h^2 = 2 tau_y / (rho g) (front - x); the front follows from the volume.
+// A heap that has yielded everywhere and stopped. The yield stress acts on its base, and the horizontal force on a
+// section balances it: d/dx(rho g h^2 / 2 - c tau_y h) = -tau_y, so h^2 - 2 c s h = 2 s (front - x) with s = tau_y /
+// (rho g). For a very shallow heap c = 0 [Liu and Mei 1989]. As it spreads, the stress along x exceeds the vertical one
+// by 2 sqrt(tau_y^2 - tau^2), with the shear tau growing linearly from the surface to the base: integrated over the
+// height that is pi / 2 tau_y h, so c = pi / 2 [Nye 1951; Dubash et al. 2009]. The heap then ends in a cliff 2 c s
+// high.
 struct FinalShape {
-  double slope = yield_stress / (1000 * gravity);
-  double front = std::cbrt(std::pow(1.5 * edge * edge, 2) / (2 * slope));
-  double height(double x) const { return std::sqrt(2 * slope * std::max(0.0, front - x)); }
+  double slope = yield_stress / (1000 * gravity), cliff = 0, front = 0;
+
+  explicit FinalShape(double normal_stress) : cliff(2 * normal_stress * slope) {
+    double low = 0, high = 10 * edge;
+    for (int k = 0; k < 60; ++k) {
+      front = 0.5 * (low + high);
+      (volume() > edge * edge ? high : low) = front;
+    }
+  }
+  double height(double x) const {
+    return 0.5 * cliff + std::sqrt(0.25 * cliff * cliff + 2 * slope * std::max(0.0, front - x));
+  }
+  double volume() const {  // per width (m^2)
+    const double half = 0.5 * cliff;
+    return half * front + (std::pow(half * half + 2 * slope * front, 1.5) - std::pow(half, 3)) / (3 * slope);
+  }
 };
 
 ValidationResult run(double resolution) {
@@ -61,7 +79,7 @@ ValidationResult run(double resolution) {
     result.data.add({solver.time(), front, height});
   }
   // The surface: highest particle in every column two spacings wide.
-  Series surface{"computed", {}, {}}, theory{"theory", {}, {}};
+  Series surface{"computed", {}, {}}, theory{"theory", {}, {}}, shallow{"theory, very shallow", {}, {}};
   for (double x = 0; x < front; x += 2 * spacing) {
     double top = 0;
     for (const Vec3& p : state.positions) {
@@ -70,18 +88,23 @@ ValidationResult run(double resolution) {
     surface.x.push_back(x + spacing);
     surface.y.push_back(top);
   }
-  const FinalShape shape;
-  for (int k = 0; k <= 100; ++k) {
-    theory.x.push_back(shape.front * k / 100);
-    theory.y.push_back(shape.height(shape.front * k / 100));
-  }
+  const FinalShape shape(std::numbers::pi / 2), shallow_shape(0);
+  const auto add = [](const FinalShape& form, Series& series) {
+    for (int k = 0; k <= 100; ++k) {
+      series.x.push_back(form.front * k / 100);
+      series.y.push_back(form.height(form.front * k / 100));
+    }
+    series.x.push_back(form.front), series.y.push_back(0);
+  };
+  add(shape, theory);
+  add(shallow_shape, shallow);
   result.figures = {
       near_to("front where it stops, share of theory", front / shape.front, 1, 0.1),
       near_to("height where it stops, share of theory", height / shape.height(0), 1, 0.1),
       at_most("motion of the front in the last quarter, share of its way", (front - front_before) / (front - edge),
               0.03),
   };
-  result.plots.plots = {line_plot("Where it stops", "x (m)", "height (m)", {theory, surface}),
+  result.plots.plots = {line_plot("Where it stops", "x (m)", "height (m)", {theory, surface, shallow}),
                         line_plot("Front", "time (s)", "x (m)", {fronts})};
   return result;
 }
