@@ -61,10 +61,22 @@ Front run_column(int across, double end) {
   return front;
 }
 
-double largest_error(const Front& front, const std::vector<DamBreakPoint>& points) {
+// Of the front with its clock `delay` behind that of the experiment. Points before that are the column at rest.
+double largest_error(const Front& front, const std::vector<DamBreakPoint>& points, double delay = 0) {
   double worst = 0;
-  for (const auto& [t, z] : points) worst = std::max(worst, std::abs(front.at(t) - z) / z);
+  for (const auto& [t, z] : points) worst = std::max(worst, std::abs(front.at(std::max(0.0, t - delay)) - z) / z);
   return worst;
+}
+
+// The column of the computation is free at once; a gate or a diaphragm takes time to open, and when the experiments'
+// clocks start is not certain to that time. The delay that fits best, up to 0.4 of the unit of time.
+double best_delay(const Front& front, const std::vector<DamBreakPoint>& points) {
+  double best = 0;
+  for (int k = 1; k <= 40; ++k) {
+    const double delay = 0.01 * k;
+    if (largest_error(front, points, delay) < largest_error(front, points, best)) best = delay;
+  }
+  return best;
 }
 
 Series series_of(const std::string& name, const std::vector<DamBreakPoint>& points) {
@@ -86,6 +98,9 @@ ValidationResult run(double resolution) {
     for (const DamBreakSeries& experiment : dam_break_experiments()) {
       result.figures.push_back(at_most(fmt::format("largest error of the front; {}; {}", name, experiment.name),
                                        largest_error(front, experiment.points), 0.05));
+      const double delay = best_delay(front, experiment.points);
+      result.figures.push_back(at_most(fmt::format("the same, {:.2f} later; {}; {}", delay, name, experiment.name),
+                                       largest_error(front, experiment.points, delay), 0.05));
     }
   }
   for (const DamBreakSeries& experiment : dam_break_experiments()) {
