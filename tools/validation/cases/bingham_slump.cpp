@@ -85,9 +85,11 @@ ValidationResult run(double resolution) {
     for (const Vec3& p : state.positions) {
       if (p.x() >= x && p.x() < x + 2 * spacing) top = std::max(top, p.y() + 0.5 * spacing);
     }
+    if (top == 0) continue;
     surface.x.push_back(x + spacing);
     surface.y.push_back(top);
   }
+  surface.x.push_back(front), surface.y.push_back(0);
   const FinalShape shape(std::numbers::pi / 2), shallow_shape(0);
   const auto add = [](const FinalShape& form, Series& series) {
     for (int k = 0; k <= 100; ++k) {
