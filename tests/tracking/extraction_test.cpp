@@ -4,15 +4,20 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <array>
+#include <cmath>
 #include <map>
+#include <random>
 #include <set>
 #include <stdexcept>
 
 #include "tests/tracking/mesh_test_shapes.h"
 #include "tracking/advection/projection.h"
+#include "tracking/extraction/cell_triangles.h"
 #include "tracking/extraction/marching_cubes_tables.h"
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
+#include "tracking/mesh/self_intersections.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -29,34 +34,67 @@ std::string problems_of(const SurfaceGeometry& surface) {
 TEST(CellTables, UseEachCrossedEdgeAndNoOther) {
   const CellTables& tables = cell_tables();
   for (int pattern = 0; pattern < 256; ++pattern) {
-    std::set<int> used;
-    for (const auto& triangle : tables.triangles[pattern]) used.insert(triangle.begin(), triangle.end());
-    for (int edge = 0; edge < 12; ++edge) {
-      const auto& [a, b] = tables.edge_corners[edge];
-      const bool crossed = (pattern >> a & 1) != (pattern >> b & 1);
-      EXPECT_EQ(used.count(edge) == 1, crossed) << "pattern " << pattern << ", edge " << edge;
+    for (const auto& triangles : tables.triangulations[pattern]) {
+      std::set<int> used;
+      for (const auto& triangle : triangles) used.insert(triangle.begin(), triangle.end());
+      for (int edge = 0; edge < 12; ++edge) {
+        const auto& [a, b] = tables.edge_corners[edge];
+        const bool crossed = (pattern >> a & 1) != (pattern >> b & 1);
+        EXPECT_EQ(used.count(edge) == 1, crossed) << "pattern " << pattern << ", edge " << edge;
+      }
+    }
+  }
+}
+
+void expect_no_diagonal_in_a_face(const CellTables::Triangles& triangles) {
+  const CellTables& tables = cell_tables();
+  std::map<std::pair<int, int>, int> uses;  // of undirected sides
+  for (const auto& triangle : triangles) {
+    for (int corner = 0; corner < 3; ++corner) ++uses[std::minmax(triangle[corner], triangle[(corner + 1) % 3])];
+  }
+  for (const auto& [side, count] : uses) {
+    if (count == 1) continue;  // a segment on a face
+    EXPECT_EQ(count, 2);
+    const auto& a = tables.edge_corners[side.first];
+    const auto& b = tables.edge_corners[side.second];
+    for (int axis = 0; axis < 3; ++axis) {
+      const int bits = (a[0] >> axis & 1) + (a[1] >> axis & 1) + (b[0] >> axis & 1) + (b[1] >> axis & 1);
+      EXPECT_TRUE(bits != 0 && bits != 4);
     }
   }
 }
 
 TEST(CellTables, NoDiagonalLiesInAFace) {
+  for (const auto& all : cell_tables().triangulations) {
+    ASSERT_FALSE(all.empty());
+    for (const auto& triangles : all) expect_no_diagonal_in_a_face(triangles);
+  }
+}
+
+TEST(CellTriangles, DoNotIntersectWhereverTheVerticesLie) {
   const CellTables& tables = cell_tables();
-  for (int pattern = 0; pattern < 256; ++pattern) {
-    std::map<std::pair<int, int>, int> uses;  // of undirected sides
-    for (const auto& triangle : tables.triangles[pattern]) {
-      for (int corner = 0; corner < 3; ++corner) ++uses[std::minmax(triangle[corner], triangle[(corner + 1) % 3])];
-    }
-    for (const auto& [side, count] : uses) {
-      if (count == 1) continue;  // a segment on a face
-      EXPECT_EQ(count, 2);
-      const auto& a = tables.edge_corners[side.first];
-      const auto& b = tables.edge_corners[side.second];
-      for (int axis = 0; axis < 3; ++axis) {
-        const int bits = (a[0] >> axis & 1) + (a[1] >> axis & 1) + (b[0] >> axis & 1) + (b[1] >> axis & 1);
-        EXPECT_TRUE(bits != 0 && bits != 4) << "pattern " << pattern;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> anywhere(0.001, 0.999);
+  int first_intersects = 0, all_intersect = 0;
+  const auto intersections = [](const CellTables::Triangles& triangles, const std::array<Vec3, 12>& places) {
+    return self_intersections({places.begin(), places.end()}, {triangles.begin(), triangles.end()}).size();
+  };
+  for (int round = 0; round < 40; ++round) {
+    for (int pattern = 0; pattern < 256; ++pattern) {
+      std::array<Vec3, 12> places;
+      for (int edge = 0; edge < 12; ++edge) {
+        const int low = tables.edge_corners[edge][0];
+        // Near the ends folds are most likely.
+        const double t = round % 2 == 0 ? anywhere(random) : std::pow(anywhere(random), 4);
+        places[edge] =
+            Vec3(low & 1, low >> 1 & 1, low >> 2 & 1) + (random() % 2 == 0 ? t : 1 - t) * Vec3::Unit(edge / 4);
       }
+      first_intersects += intersections(tables.triangulations[pattern].front(), places) > 0;
+      all_intersect += intersections(triangles_of_cell(pattern, places), places) > 0;
     }
   }
+  EXPECT_GT(first_intersects, 0);
+  EXPECT_EQ(all_intersect, 0);
 }
 
 // Two cells that share a face, all 4096 sign patterns for each axis: 16 x 16 x 16 pairs, apart from each other.

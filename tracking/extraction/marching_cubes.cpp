@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "tracking/extraction/cell_triangles.h"
 #include "tracking/extraction/marching_cubes_tables.h"
 
 namespace flowskin::tracking {
@@ -160,18 +161,20 @@ class Marcher {
 
   void place_cell(int b, const SparseGrid::Index& cell, int pattern) {
     const CellTables& tables = cell_tables();
-    for (const auto& edges : tables.triangles[pattern]) {
-      Triangle triangle{};
-      for (int corner = 0; corner < 3; ++corner) {
-        const int start = tables.edge_corners[edges[corner]][0];
-        int node = 0;
-        const int block =
-            locate(b, cell[0] + (start & 1), cell[1] + (start >> 1 & 1), cell[2] + (start >> 2 & 1), node);
-        const BlockSurface& owner = surfaces_[block];
-        triangle[corner] = owner.first_vertex + owner.vertex_of_edge[3 * node + edges[corner] / 4];
-      }
-      surfaces_[b].triangles.push_back(triangle);
+    std::array<int, 12> vertices{};
+    std::array<Vec3, 12> places;
+    for (int edge = 0; edge < 12; ++edge) {
+      const auto [start, end] = tables.edge_corners[edge];
+      if ((pattern >> start & 1) == (pattern >> end & 1)) continue;
+      int node = 0;
+      const int block = locate(b, cell[0] + (start & 1), cell[1] + (start >> 1 & 1), cell[2] + (start >> 2 & 1), node);
+      const BlockSurface& owner = surfaces_[block];
+      const int vertex = owner.vertex_of_edge[3 * node + edge / 4];
+      vertices[edge] = owner.first_vertex + vertex;
+      places[edge] = owner.positions[vertex];
     }
+    for (const auto& [i, j, k] : triangles_of_cell(pattern, places))
+      surfaces_[b].triangles.push_back({vertices[i], vertices[j], vertices[k]});
   }
 
   const SparseGrid& grid_;
@@ -196,19 +199,21 @@ SurfaceGeometry march(const SparseGrid& grid, const CellSet& cells, const Scalar
       values[c] = grid.value(corners[c]);
       pattern |= values[c] > 0 ? 1 << c : 0;
     }
-    for (const auto& edges : tables.triangles[pattern]) {
-      Triangle triangle{};
-      for (int corner = 0; corner < 3; ++corner) {
-        const int axis = edges[corner] / 4;
-        const auto [low, high] = tables.edge_corners[edges[corner]];
-        const auto [place, is_new] =
-            vertex_of_edge.try_emplace({corners[low], axis}, static_cast<int>(result.positions.size()));
-        if (is_new)
-          result.positions.push_back(vertex_on_edge(grid, corners[low], axis, values[low], values[high], field));
-        triangle[corner] = place->second;
-      }
-      result.triangles.push_back(triangle);
+    std::array<int, 12> vertices{};
+    std::array<Vec3, 12> places;
+    for (int edge = 0; edge < 12; ++edge) {
+      const auto [low, high] = tables.edge_corners[edge];
+      if ((pattern >> low & 1) == (pattern >> high & 1)) continue;
+      const int axis = edge / 4;
+      const auto [place, is_new] =
+          vertex_of_edge.try_emplace({corners[low], axis}, static_cast<int>(result.positions.size()));
+      if (is_new)
+        result.positions.push_back(vertex_on_edge(grid, corners[low], axis, values[low], values[high], field));
+      vertices[edge] = place->second;
+      places[edge] = result.positions[place->second];
     }
+    for (const auto& [i, j, k] : triangles_of_cell(pattern, places))
+      result.triangles.push_back({vertices[i], vertices[j], vertices[k]});
   }
   return result;
 }

@@ -1,6 +1,7 @@
 #include "tracking/extraction/marching_cubes_tables.h"
 
 #include <stdexcept>
+#include <utility>
 
 namespace flowskin::tracking {
 namespace {
@@ -59,23 +60,35 @@ bool share_face(const std::array<int, 2>& first, const std::array<int, 2>& secon
   return false;
 }
 
-// Cuts polygon[first..last] into triangles; the side first-last belongs to what is already cut.
-bool triangulate(const Polygon& polygon, int first, int last, const CellTables& tables,
-                 std::vector<std::array<int, 3>>& triangles) {
-  if (last - first < 2) return true;
+using Triangles = CellTables::Triangles;
+
+// All of the one with all of the other.
+std::vector<Triangles> combined(const std::vector<Triangles>& first, const std::vector<Triangles>& second) {
+  std::vector<Triangles> all;
+  for (const Triangles& begin : first) {
+    for (const Triangles& end : second) {
+      all.push_back(begin);
+      all.back().insert(all.back().end(), end.begin(), end.end());
+    }
+  }
+  return all;
+}
+
+// All ways to cut polygon[first..last] into triangles; the side first-last belongs to what is already cut.
+std::vector<Triangles> triangulations(const Polygon& polygon, int first, int last, const CellTables& tables) {
+  if (last - first < 2) return {{}};
   const auto allowed = [&](int i, int j) {
     return j - i == 1 || !share_face(tables.edge_corners[polygon[i]], tables.edge_corners[polygon[j]]);
   };
+  std::vector<Triangles> all;
   for (int apex = first + 1; apex < last; ++apex) {
     if (!allowed(first, apex) || !allowed(apex, last)) continue;
-    const std::size_t before = triangles.size();
-    triangles.push_back({polygon[first], polygon[apex], polygon[last]});
-    if (triangulate(polygon, first, apex, tables, triangles) && triangulate(polygon, apex, last, tables, triangles)) {
-      return true;
-    }
-    triangles.resize(before);
+    const std::vector<Triangles> here{{{polygon[first], polygon[apex], polygon[last]}}};
+    for (Triangles& triangles : combined(combined(here, triangulations(polygon, first, apex, tables)),
+                                         triangulations(polygon, apex, last, tables)))
+      all.push_back(std::move(triangles));
   }
-  return false;
+  return all;
 }
 
 CellTables make_tables() {
@@ -83,6 +96,8 @@ CellTables make_tables() {
   tables.edge_corners = make_edge_corners();
   for (int pattern = 0; pattern < 256; ++pattern) {
     std::array<int, 12> next = make_segments(pattern);
+    std::vector<Triangles>& all = tables.triangulations[pattern];
+    all.emplace_back();
     for (int start = 0; start < 12; ++start) {
       Polygon polygon;
       for (int edge = start; next[edge] >= 0;) {
@@ -91,10 +106,9 @@ CellTables make_tables() {
         next[edge] = -1;
         edge = following;
       }
-      if (!triangulate(polygon, 0, static_cast<int>(polygon.size()) - 1, tables, tables.triangles[pattern])) {
-        throw std::logic_error("marching cubes: a polygon has no diagonals off the faces of its cell");
-      }
+      all = combined(all, triangulations(polygon, 0, static_cast<int>(polygon.size()) - 1, tables));
     }
+    if (all.empty()) throw std::logic_error("marching cubes: a polygon has no diagonals off the faces of its cell");
   }
   return tables;
 }

@@ -9,9 +9,11 @@ namespace flowskin::tracking {
 /// Corner c of a cell has the coordinates (c & 1, c >> 1 & 1, c >> 2 & 1).
 /// Edge 4 a + u + 2 v runs along axis a from the corner with coordinate u along axis a + 1 and v along axis a + 2.
 struct CellTables {
-  /// Triangles of a pattern, as edges of the cell, counter-clockwise seen from outside. Bit c of the pattern: corner c
-  /// is inside.
-  std::array<std::vector<std::array<int, 3>>, 256> triangles;
+  /// Triangles, as edges of the cell, counter-clockwise seen from outside.
+  using Triangles = std::vector<std::array<int, 3>>;
+  /// All ways to cut the polygons of a pattern into triangles; at least one, even if of no triangles. Bit c of the
+  /// pattern: corner c is inside.
+  std::array<std::vector<Triangles>, 256> triangulations;
   std::array<std::array<int, 2>, 12> edge_corners;  ///< The two ends of an edge, the lower corner first.
 };
 

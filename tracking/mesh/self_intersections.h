@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "tracking/mesh/surface_mesh.h"
@@ -21,5 +22,9 @@ namespace flowskin::tracking {
 /// with a vertex index out of range or twice.
 std::vector<std::array<int, 2>> self_intersections(const std::vector<Vec3>& positions,
                                                    const std::vector<Triangle>& triangles);
+
+/// The same for two triangles: whether they have a point in common that is not on an edge or a vertex that they share.
+/// @pre All coordinates are 0 or between 1e-60 and 1e60 m, and each triangle has three different vertices.
+bool triangles_intersect(std::span<const Vec3> positions, Triangle first, Triangle second);
 
 }  // namespace flowskin::tracking

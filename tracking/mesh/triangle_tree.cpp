@@ -1,7 +1,6 @@
 #include "tracking/mesh/triangle_tree.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace flowskin::tracking {
 namespace {
@@ -17,6 +16,8 @@ int node_count(int triangles) {
   return 1 + left + (rest == half ? left : node_count(rest));
 }
 
+Box united(const Box& a, const Box& b) { return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)}; }
+
 }  // namespace
 
 Box bounding_box(const std::vector<Vec3>& positions, const Triangle& triangle) {
@@ -24,50 +25,59 @@ Box bounding_box(const std::vector<Vec3>& positions, const Triangle& triangle) {
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
 }
 
-TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles)
-    : order_(triangles.size()) {
-  if (triangles.empty()) return;
-  std::iota(order_.begin(), order_.end(), 0);
-  std::vector<Vec3> centers(triangles.size());
-  std::vector<Box> boxes(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    centers[t] = (positions[triangles[t][0]] + positions[triangles[t][1]] + positions[triangles[t][2]]) / 3;
-    boxes[t] = bounding_box(positions, triangles[t]);
-  }
+TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
   const int count = static_cast<int>(triangles.size());
+  if (count == 0) return;
+  order_.resize(count);
+  boxes_.resize(count);
   nodes_.resize(node_count(count));
+  std::vector<Item> items(count);
 #pragma omp parallel
+  {
+#pragma omp for schedule(static)
+    for (int t = 0; t < count; ++t) {
+      const auto& [a, b, c] = triangles[t];
+      items[t] = {(positions[a] + positions[b] + positions[c]) / 3, t};
+    }
 #pragma omp single
-  build(0, 0, count, centers, boxes);
-  boxes_.reserve(boxes.size());
-  for (const int t : order_) boxes_.push_back(boxes[t]);
+    build(0, 0, count, positions, triangles, items);
+  }
 }
 
-void TriangleTree::build(int index, int begin, int end, const std::vector<Vec3>& centers,
-                         const std::vector<Box>& boxes) {
-  Node node{boxes[order_[begin]], begin, end, -1};
-  Vec3 low = centers[order_[begin]], high = low;
-  for (int i = begin; i < end; ++i) {
-    const Box& box = boxes[order_[i]];
-    node.box = {node.box.low.cwiseMin(box.low), node.box.high.cwiseMax(box.high)};
-    low = low.cwiseMin(centers[order_[i]]);
-    high = high.cwiseMax(centers[order_[i]]);
+void TriangleTree::build(int index, int begin, int end, const std::vector<Vec3>& positions,
+                         const std::vector<Triangle>& triangles, std::vector<Item>& items) {
+  Node& node = nodes_[index];
+  node.begin = begin;
+  node.end = end;
+  if (end - begin <= kLeafSize) {
+    node.right = -1;
+    for (int i = begin; i < end; ++i) {
+      order_[i] = items[i].triangle;
+      boxes_[i] = bounding_box(positions, triangles[order_[i]]);
+      node.box = i == begin ? boxes_[i] : united(node.box, boxes_[i]);
+    }
+    return;
   }
-  const int middle = begin + (end - begin) / 2;
-  const bool is_leaf = end - begin <= kLeafSize;
-  if (!is_leaf) node.right = index + 1 + node_count(middle - begin);
-  nodes_[index] = node;
-  if (is_leaf) return;
 
+  Vec3 low = items[begin].center, high = low;
+  for (int i = begin; i < end; ++i) {
+    low = low.cwiseMin(items[i].center);
+    high = high.cwiseMax(items[i].center);
+  }
   int axis = 0;
   (high - low).maxCoeff(&axis);
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int s, int t) {
-    return centers[s][axis] != centers[t][axis] ? centers[s][axis] < centers[t][axis] : s < t;
-  });
-#pragma omp task if (end - begin > kTaskSize) shared(centers, boxes)
-  build(index + 1, begin, middle, centers, boxes);
-  build(node.right, middle, end, centers, boxes);
+  const int middle = begin + (end - begin) / 2;
+  std::nth_element(
+      items.begin() + begin, items.begin() + middle, items.begin() + end, [axis](const Item& s, const Item& t) {
+        return s.center[axis] != t.center[axis] ? s.center[axis] < t.center[axis] : s.triangle < t.triangle;
+      });
+  const int left = index + 1, right = left + node_count(middle - begin);
+  node.right = right;
+#pragma omp task if (end - begin > kTaskSize) shared(positions, triangles, items)
+  build(left, begin, middle, positions, triangles, items);
+  build(right, middle, end, positions, triangles, items);
 #pragma omp taskwait
+  node.box = united(nodes_[left].box, nodes_[right].box);
 }
 
 }  // namespace flowskin::tracking

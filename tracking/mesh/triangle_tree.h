@@ -42,7 +42,12 @@ class TriangleTree {
   const std::vector<Box>& boxes() const { return boxes_; }   ///< Around each triangle, in this order.
 
  private:
-  void build(int index, int begin, int end, const std::vector<Vec3>& centers, const std::vector<Box>& boxes);
+  struct Item {
+    Vec3 center;
+    int triangle;
+  };
+  void build(int index, int begin, int end, const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+             std::vector<Item>& items);
 
   std::vector<int> order_;
   std::vector<Box> boxes_;
