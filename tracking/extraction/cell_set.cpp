@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace flowskin::tracking {
@@ -40,18 +41,40 @@ CellSet::CellSet(std::vector<Cell> cells) : cells_(std::move(cells)) {
 
 bool CellSet::contains(const Cell& cell) const { return std::binary_search(cells_.begin(), cells_.end(), cell); }
 
+bool CellSet::contains(const CellSet& other) const {
+  return std::includes(cells_.begin(), cells_.end(), other.cells_.begin(), other.cells_.end());
+}
+
+CellSet CellSet::united(const CellSet& other) const {
+  if (other.empty()) return *this;
+  if (empty()) return other;
+  CellSet sum;
+  sum.cells_.reserve(cells_.size() + other.cells_.size());
+  std::set_union(cells_.begin(), cells_.end(), other.cells_.begin(), other.cells_.end(),
+                 std::back_inserter(sum.cells_));
+  for (int axis = 0; axis < 3; ++axis) {
+    sum.low_[axis] = std::min(low_[axis], other.low_[axis]);
+    sum.high_[axis] = std::max(high_[axis], other.high_[axis]);
+  }
+  return sum;
+}
+
+CellSet CellSet::moved(int axis, int offset) const {
+  CellSet result = *this;
+  for (Cell& cell : result.cells_) cell[axis] += offset;
+  result.low_[axis] += offset;
+  result.high_[axis] += offset;
+  return result;
+}
+
 CellSet CellSet::dilated(int layers) const {
   CellSet grown = *this;
+  // A union of two sets that are moved against each other by less than they are long leaves no gaps.
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<Cell> wider;
-    wider.reserve(grown.cells_.size() * (2 * layers + 1));
-    for (const Cell& cell : grown.cells_) {
-      for (int offset = -layers; offset <= layers; ++offset) {
-        wider.push_back(cell);
-        wider.back()[axis] += offset;
-      }
-    }
-    grown = CellSet(std::move(wider));
+    int left = 2 * layers;
+    for (int length = 1; left > 0; left -= std::min(left, length), length *= 2)
+      grown = grown.united(grown.moved(axis, std::min(left, length)));
+    grown = grown.moved(axis, -layers);
   }
   return grown;
 }
@@ -90,9 +113,15 @@ bool meets(const CellSet& cells, const Vec3& low, const Vec3& high) {
     last[axis] = std::min(last[axis], cells.high()[axis]);
     if (first[axis] > last[axis]) return false;
   }
-  bool found = false;
-  for_each_cell(first, last, [&](const Cell& cell) { found = found || cells.contains(cell); });
-  return found;
+  for (Cell cell = first; cell[0] <= last[0]; ++cell[0]) {
+    for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1]) {
+      cell[2] = first[2];
+      const auto next = std::lower_bound(cells.cells().begin(), cells.cells().end(), cell);
+      cell[2] = last[2];
+      if (next != cells.cells().end() && *next <= cell) return true;
+    }
+  }
+  return false;
 }
 
 void add_cells(const Vec3& low, const Vec3& high, std::vector<Cell>& cells) {

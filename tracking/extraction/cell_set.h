@@ -20,16 +20,20 @@ class CellSet {
   const std::vector<Cell>& cells() const { return cells_; }
   bool empty() const { return cells_.empty(); }
   bool contains(const Cell& cell) const;
+  bool contains(const CellSet& other) const;
   /// Lowest and highest cell along each axis. @pre not empty
   const Cell& low() const { return low_; }
   const Cell& high() const { return high_; }
 
+  CellSet united(const CellSet& other) const;
   /// With all cells at most so many away along each axis.
   CellSet dilated(int layers) const;
   /// The parts that hang together over faces, edges or corners, by their lowest cell.
   std::vector<CellSet> components() const;
 
  private:
+  CellSet moved(int axis, int offset) const;
+
   std::vector<Cell> cells_;
   Cell low_{}, high_{};
 };
