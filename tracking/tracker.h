@@ -55,7 +55,7 @@ struct TrackerReport {
   template <class Archive>
   void visit(Archive& archive) {
     archive(substeps, blended, mismatch, reextracted, reason, splits, collapses, flips, regions, held_back, born);
-    archive(components, volume, area, max_distance);
+    archive(balls, components, volume, area, max_distance);
     archive(seconds_velocity, seconds_projection, seconds_fairing, seconds_topology);
   }
 };

@@ -89,12 +89,36 @@ TEST(GridCrossings, EveryLineLeavesAsOftenAsItEnters_EvenThroughVerticesAndEdges
 
 // ---------------------------------------------------------------- disagreement
 
+std::vector<CellSet::Cell> disagreements(const MetaballField& field, const SurfaceGeometry& mesh) {
+  const SparseGrid grid = grid_of(field);
+  return disagreeing_cells(field, grid, 0.3 * kEdge, grid_crossings(grid, mesh.positions, mesh.triangles));
+}
+
+std::vector<CellSet::Cell> displacements(const MetaballField& field, const SurfaceGeometry& mesh) {
+  const SparseGrid grid = grid_of(field);
+  return displaced_cells(field, grid, 0.45, grid_crossings(grid, mesh.positions, mesh.triangles));
+}
+
 TEST(Disagreement, NoneForAFreshMesh) {
   for (const double radius : {2.3, 4.2, 6.3}) {
     const MetaballField field(ball_of_particles(radius), {}, kField);
     const SurfaceGeometry mesh = extract_surface(field, kEdge);
-    EXPECT_TRUE(disagreeing_cells(field, grid_of(field), 0.3 * kEdge, mesh.positions, mesh.triangles).empty());
+    EXPECT_TRUE(disagreements(field, mesh).empty());
+    EXPECT_TRUE(displacements(field, mesh).empty());
   }
+}
+
+// One half of a ball's mesh is 0.7 cells too small: on some grid edges mesh and field cross too far from each other.
+TEST(Disagreement, DisplacedSurfaceIsSeenWhereItIs) {
+  const MetaballField field(ball_of_particles(4.2), {}, kField);
+  SurfaceGeometry mesh = extract_surface(field, kEdge);
+  for (Vec3& x : mesh.positions) {
+    if (x.x() > 0) x *= 1 - 0.7 * kEdge / x.norm();
+  }
+  const auto cells = displacements(field, mesh);
+  EXPECT_GT(cells.size(), 20U);
+  const SparseGrid grid = grid_of(field);
+  for (const auto& cell : cells) EXPECT_GT(grid.position(cell).x(), -2 * kEdge);
 }
 
 std::vector<Vec3> two_balls(double distance) {
@@ -109,7 +133,7 @@ TEST(Disagreement, IsSeenWhereBallsHaveMergedAndNowhereElse) {
   for (Vec3& x : mesh.positions) x[0] += x[0] < 0 ? 0.9 : -0.9;
   const MetaballField merged(two_balls(7.2), {}, kField);
   const SparseGrid grid = grid_of(merged);
-  const auto cells = disagreeing_cells(merged, grid, 0.3 * kEdge, mesh.positions, mesh.triangles);
+  const auto cells = disagreements(merged, mesh);
   ASSERT_FALSE(cells.empty());
   for (const auto& cell : cells) EXPECT_LT(std::abs(grid.position(cell)[0]), 2) << "far from the neck";
 }
@@ -123,7 +147,7 @@ TEST(Disagreement, IsSeenBetweenSheetsCloserThanACell) {
       [](const Vec3& x) { return 0.04 - std::hypot(std::max(0.0, std::hypot(x.y(), x.z()) - 1.5), x.x()); }, 2, 0.03);
   for (Vec3& x : slit.positions) x += Vec3(grid.position({0, 0, 0})[0] + 0.5 * kEdge, 0, 0);
   mesh = test::both(mesh, test::flipped(slit));
-  const auto cells = disagreeing_cells(field, grid, 0.3 * kEdge, mesh.positions, mesh.triangles);
+  const auto cells = disagreements(field, mesh);
   EXPECT_GT(cells.size(), 8u);
 }
 

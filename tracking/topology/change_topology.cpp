@@ -2,161 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "tracking/extraction/marching_cubes.h"
-#include "tracking/fairing/bad_triangles.h"
-#include "tracking/fairing/relaxation.h"
 #include "tracking/mesh/keep_vertices.h"
 #include "tracking/mesh/mesh_measures.h"
-#include "tracking/mesh/self_intersections.h"
-#include "tracking/topology/disagreement.h"
-#include "tracking/topology/local_topology.h"
+#include "tracking/topology/places_to_mend.h"
 #include "tracking/topology/replace_region.h"
 #include "tracking/topology/small_parts.h"
-#include "tracking/topology/strays.h"
 
 namespace flowskin::tracking {
 namespace {
 
 constexpr int kRounds = 14;
-constexpr double kDust = 0.05;                       // volume of a component that is not worth its triangles, in cells
-constexpr double kResolved = 0.3;                    // cells; how well the grid knows the surface where it resolves it
-constexpr double kFarApart = 0.45;                   // cells; the two surfaces are not to be so far from each other
-constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};  // cells; a thin neck is near its stumps
-constexpr double kHiddenShares[] = {0.75, 0.75, 0.4};  // of the trace that a hole leaves
-constexpr int kAttempts = 30;                          // to fit a region in, until it has grown to where it does
-constexpr int kAllAroundEvery = 6;                     // attempts the region grows as a whole
-constexpr int kTimes = 4;                              // that a place may be named in one call
-constexpr int kFocus = 2;  // layers of cells around a replaced region that are looked at again
-
-std::vector<Box> boxes_of(const SparseGrid& grid, const SurfaceMesh& mesh) {
-  std::vector<Box> boxes(mesh.triangles.size());
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t t = 0; t < std::ssize(boxes); ++t) boxes[t] = box_of(grid, mesh.triangles[t], mesh.positions);
-  return boxes;
-}
-
-// Triangles that are off the surface, wrong side out, without area, or that intersect. A sharp fold may be: a rim of
-// fluid can be thinner than an edge.
-std::vector<int> spoilt_triangles(const SurfaceMesh& mesh, const Projection& projection,
-                                  const std::vector<int>& looked_at) {
-  std::vector<char> failed(mesh.positions.size(), 0), spoilt(looked_at.size());
-  for (int vertex : projection.failed) failed[vertex] = 1;
-  std::vector<Triangle> triangles(looked_at.size());
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t i = 0; i < std::ssize(looked_at); ++i) {
-    const Triangle& triangle = triangles[i] = mesh.triangles[looked_at[i]];
-    spoilt[i] = failed[triangle[0]] || failed[triangle[1]] || failed[triangle[2]] ||
-                is_degenerate(triangle, mesh.positions) || is_inverted(triangle, mesh.positions, projection.normals);
-  }
-  for (const auto& [first, second] : self_intersections(mesh.positions, triangles)) spoilt[first] = spoilt[second] = 1;
-  std::vector<int> found;
-  for (std::size_t i = 0; i < looked_at.size(); ++i) {
-    if (spoilt[i]) found.push_back(looked_at[i]);
-  }
-  return found;
-}
-
-void add(const std::vector<CellSet::Cell>& cells, CellSet& set) {
-  std::vector<CellSet::Cell> all = set.cells();
-  all.insert(all.end(), cells.begin(), cells.end());
-  set = CellSet(std::move(all));
-}
-
-// All triangles, or those that meet the cells.
-std::vector<int> triangles_in(const CellSet* cells, const std::vector<Box>& boxes) {
-  std::vector<int> found;
-  for (int t = 0; t < static_cast<int>(boxes.size()); ++t) {
-    if (!cells || meets(*cells, boxes[t].low, boxes[t].high)) found.push_back(t);
-  }
-  return found;
-}
-
-// What is found in one round, and where to look in the next.
-class PlacesToMend {
- public:
-  PlacesToMend(const FieldGrid& fresh, double depth) : fresh_(fresh), depth_(depth) {}
-
-  // The regions with something to mend. What is still spoilt when it has been replaced is replaced in wider and wider
-  // regions, and in the end left as it is.
-  std::vector<CellSet> find(const SurfaceMesh& mesh, const Projection& projection, const SurfaceGeometry& expected) {
-    std::vector<CellSet::Cell> cells;
-    // Fresh surface agrees with the signs of the grid.
-    if (!focus_) cells = places_of_disagreement(mesh, expected);
-    const std::vector<Box> boxes = boxes_of(fresh_.grid, mesh);
-    const std::vector<int> looked_at = triangles_in(focus_ ? &*focus_ : nullptr, boxes);
-    for (int t : spoilt_triangles(mesh, projection, looked_at)) add_cells(boxes[t].low, boxes[t].high, cells);
-    std::erase_if(cells, [&](const CellSet::Cell& cell) { return named_[kTimes - 1].contains(cell); });
-    const CellSet named(std::move(cells));
-    std::vector<CellSet::Cell> widened = named.cells();
-    for (int k = kTimes - 1; k >= 0; --k) {
-      // Named k + 1 times before.
-      std::vector<CellSet::Cell> again;
-      for (const auto& cell : named.cells()) {
-        if (named_[k].contains(cell)) again.push_back(cell);
-      }
-      if (k + 1 < kTimes) add(again, named_[k + 1]);
-      const CellSet wider = CellSet(std::move(again)).dilated(1 + k);
-      widened.insert(widened.end(), wider.cells().begin(), wider.cells().end());
-    }
-    add(named.cells(), named_[0]);
-    return regions(CellSet(std::move(widened)));
-  }
-
-  // Parts that only one of the two surfaces has; looked for more and more closely.
-  std::vector<CellSet> find_strays(const SurfaceMesh& mesh, const SurfaceGeometry& expected) {
-    if (stray_round_ == std::ssize(kStrayReaches)) return {};
-    const double spacing = fresh_.grid.spacing();
-    const Strays strays(fresh_.grid, kStrayReaches[stray_round_] * spacing, mesh.positions, mesh.triangles, expected);
-    while (stray_round_ < std::ssize(kStrayReaches)) {
-      const CellSet cells(strays.farther_than(kStrayReaches[stray_round_++] * spacing));
-      if (!cells.empty()) return regions(cells);
-    }
-    return {};
-  }
-
-  // Holes and bridges in films, threads and gaps thinner than a cell: the field may have them or not, marching cubes
-  // does not see it.
-  std::vector<CellSet> find_hidden(const SurfaceMesh& mesh, const SurfaceGeometry& expected) {
-    if (hidden_round_ == std::ssize(kHiddenShares)) return {};
-    const CellSet hidden = CellSet(hidden_cells(fresh_.grid, mesh.positions, mesh.triangles)).dilated(1);
-    const LocalTopology topology(fresh_.grid, mesh.positions, mesh.triangles, expected);
-    while (hidden_round_ < std::ssize(kHiddenShares)) {
-      const CellSet cells(topology.differing(hidden, kHiddenShares[hidden_round_++]));
-      if (!cells.empty()) return regions(cells);
-    }
-    return {};
-  }
-
- private:
-  // Where signs differ; and of the features that the grid hardly resolves, those that only one of the surfaces has.
-  std::vector<CellSet::Cell> places_of_disagreement(const SurfaceMesh& mesh, const SurfaceGeometry& expected) const {
-    std::vector<CellSet::Cell> doubtful;
-    std::vector<CellSet::Cell> cells =
-        disagreeing_cells(fresh_.field, fresh_.grid, depth_, mesh.positions, mesh.triangles, &doubtful);
-    for (const auto& cell : unresolved_cells(fresh_.grid, kResolved, mesh.positions)) doubtful.push_back(cell);
-    const CellSet where(std::move(doubtful));
-    const double reach = kFarApart * fresh_.grid.spacing();
-    const Strays strays(fresh_.grid, reach, mesh.positions, mesh.triangles, expected, &where);
-    for (const auto& cell : strays.farther_than(reach)) cells.push_back(cell);
-    return cells;
-  }
-
-  std::vector<CellSet> regions(const CellSet& places) {
-    const CellSet widened = places.dilated(1);
-    focus_ = widened.dilated(kFocus);
-    return widened.components();
-  }
-
-  const FieldGrid& fresh_;
-  double depth_;
-  CellSet named_[kTimes];  // cells that have been named once, twice ...
-  std::optional<CellSet> focus_;
-  int stray_round_ = 0, hidden_round_ = 0;
-};
+constexpr double kDust = 0.05;      // volume of a component that is not worth its triangles, in cells
+constexpr int kAttempts = 30;       // to fit a region in, until it has grown to where it does
+constexpr int kAllAroundEvery = 6;  // attempts the region grows as a whole
 
 // Of a closed surface, without the components that enclose less than `least` (m^3).
 SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, double least,
@@ -197,31 +61,34 @@ class MeshUnderRepair {
     mend_.triangles = mesh.triangles;
     mend_.alive.assign(mesh.triangles.size(), 1);
     mend_.boxes = boxes_of(fresh.grid, mesh);
+    for (int t = 0; t < static_cast<int>(mend_.boxes.size()); ++t) mend_.bins.add(t, mend_.boxes[t]);
   }
 
-  // Patches for all places at once, then one after the other where they get in each other's way. Returns how many
+  // Patches for all places at once; those that got in each other's way once more, until none are left. Returns how many
   // places were replaced.
   int replace(const std::vector<CellSet>& places, std::string& why) {
-    const int base = static_cast<int>(mend_.positions.size());
-    std::vector<std::optional<MeshPatch>> patches(places.size());
-    std::vector<std::string> whys(places.size());
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::ptrdiff_t p = 0; p < std::ssize(places); ++p) patches[p] = patch_for(places[p], whys[p]);
     int replaced = 0;
-    for (std::size_t p = 0; p < places.size(); ++p) {
-      const bool fits = patches[p] && std::all_of(patches[p]->removed.begin(), patches[p]->removed.end(),
-                                                  [&](int t) { return mend_.alive[t] != 0; });
-      if (fits) {
-        renumber_born(base, *patches[p]);
-      } else {
-        patches[p] = patch_for(places[p], whys[p]);
+    std::vector<int> open(places.size());
+    std::iota(open.begin(), open.end(), 0);
+    while (!open.empty()) {
+      const int base = static_cast<int>(mend_.positions.size());
+      std::vector<std::optional<MeshPatch>> patches(open.size());
+      std::vector<std::string> whys(open.size());
+#pragma omp parallel for schedule(dynamic, 1)
+      for (std::ptrdiff_t p = 0; p < std::ssize(open); ++p) patches[p] = patch_for(places[open[p]], whys[p]);
+      std::vector<int> in_the_way;
+      for (std::size_t p = 0; p < open.size(); ++p) {
+        if (!patches[p]) {
+          why = whys[p];
+        } else if (is_alive(patches[p]->removed)) {
+          renumber_born(base, *patches[p]);
+          apply(*patches[p]);
+          ++replaced;
+        } else {
+          in_the_way.push_back(open[p]);
+        }
       }
-      if (patches[p]) {
-        apply(*patches[p]);
-        ++replaced;
-      } else {
-        why = whys[p];
-      }
+      open = std::move(in_the_way);
     }
     return replaced;
   }
@@ -252,13 +119,20 @@ class MeshUnderRepair {
       why = misfit.why;
       if (patch && (!best || misfit.cells.size() < fewest)) {
         fewest = misfit.cells.size();
-        best = std::move(patch);
+        best = patch;
       }
-      const bool all_around = misfit.cells.empty() || attempt % kAllAroundEvery == 0;
-      if (all_around) cells = cells.dilated(1 + attempt / (2 * kAllAroundEvery));
-      add(CellSet(std::move(misfit.cells)).dilated(1).cells(), cells);
+      const CellSet bad(std::move(misfit.cells));
+      // Deep within the region more cells do not help.
+      if (patch && !bad.empty() && cells.contains(bad.dilated(2))) break;
+      const CellSet wider = cells.united(bad.dilated(1));
+      const bool all_around = wider.cells().size() == cells.cells().size() || attempt % kAllAroundEvery == 0;
+      cells = all_around ? wider.united(cells.dilated(1 + attempt / (2 * kAllAroundEvery))) : wider;
     }
     return best;
+  }
+
+  bool is_alive(const std::vector<int>& triangles) const {
+    return std::all_of(triangles.begin(), triangles.end(), [&](int t) { return mend_.alive[t] != 0; });
   }
 
   // Other patches have brought vertices since the mesh had `base` of them.
@@ -274,8 +148,9 @@ class MeshUnderRepair {
     mend_.positions.insert(mend_.positions.end(), patch.born.begin(), patch.born.end());
     mend_.normals.insert(mend_.normals.end(), patch.born_normals.begin(), patch.born_normals.end());
     for (const Triangle& triangle : patch.triangles) {
-      mend_.triangles.push_back(triangle);
       mend_.boxes.push_back(box_of(fresh_.grid, triangle, mend_.positions));
+      mend_.bins.add(static_cast<int>(mend_.triangles.size()), mend_.boxes.back());
+      mend_.triangles.push_back(triangle);
       mend_.alive.push_back(1);
     }
   }
@@ -386,13 +261,17 @@ TopologyReport change_topology(const MetaballField& field, const Particles& part
   report.expected = counts_of(expected.positions, expected.triangles, least, cell);
   PlacesToMend to_mend(fresh, settings.depth);
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<CellSet> regions = to_mend.find(mesh, projection, expected);
-    report.counts = counts_of(mesh.positions, mesh.triangles, least, cell);
-    if (regions.empty() && !(report.counts == report.expected)) regions = to_mend.find_hidden(mesh, expected);
-    if (regions.empty() && !(report.counts == report.expected)) regions = to_mend.find_strays(mesh, expected);
-    if (regions.empty()) break;
+    std::vector<CellSet> regions = to_mend.find(mesh, projection);
+    if (regions.empty()) {
+      report.counts = counts_of(mesh.positions, mesh.triangles, least, cell);
+      if (report.counts == report.expected) break;
+      regions = to_mend.find_hidden(mesh, expected);
+      if (regions.empty()) regions = to_mend.find_strays(mesh, expected);
+      if (regions.empty()) break;
+    }
     if (!settings.local) {
       report.stubborn = static_cast<int>(regions.size());
+      report.counts = counts_of(mesh.positions, mesh.triangles, least, cell);
       report.why = "mesh and field disagree";
       break;
     }

@@ -11,6 +11,8 @@ namespace {
 
 using Cell = CellSet::Cell;
 
+constexpr double kSurelyNear = 0.5;  // of the distance allowed: the field is no straight line between two nodes
+
 // A place to be looked at, in grid coordinates, with the winding number of the mesh there.
 struct Probe {
   Vec3 coordinates;
@@ -34,6 +36,36 @@ void probe_edges(const std::vector<GridCrossing>& crossings, int axis, std::vect
       probe.coordinates[(axis + 1) % 3] = crossing->line[0];
       probe.coordinates[(axis + 2) % 3] = crossing->line[1];
       probes.push_back(probe);
+    }
+  });
+}
+
+// Of lines along one axis: places `apart` (cells) to both sides of a crossing that is alone on its grid edge, where the
+// values at the ends of the edge put it much elsewhere.
+void probe_beside(const SparseGrid& grid, const std::vector<GridCrossing>& crossings, int axis, double apart,
+                  std::vector<Probe>& probes) {
+  for_each_line(crossings, [&](const GridCrossing* begin, const GridCrossing* end) {
+    for (const GridCrossing* crossing = begin; crossing < end; ++crossing) {
+      const double low = std::floor(crossing->place);
+      if ((crossing > begin && crossing[-1].place >= low) || (crossing + 1 < end && crossing[1].place < low + 1))
+        continue;
+      SparseGrid::Index node{};
+      node[axis] = static_cast<int>(low);
+      node[(axis + 1) % 3] = crossing->line[0];
+      node[(axis + 2) % 3] = crossing->line[1];
+      const double f = grid.value(node);
+      ++node[axis];
+      const double g = grid.value(node);
+      if ((f > 0) == (g > 0) || std::abs(low + f / (f - g) - crossing->place) < kSurelyNear * apart) continue;
+      for (const int side : {-1, 1}) {
+        const double place = crossing->place + side * apart;
+        if (place <= low || place >= low + 1) continue;
+        Probe probe{Vec3::Zero(), side * crossing->change > 0 ? 1 : 0};
+        probe.coordinates[axis] = place;
+        probe.coordinates[(axis + 1) % 3] = crossing->line[0];
+        probe.coordinates[(axis + 2) % 3] = crossing->line[1];
+        probes.push_back(probe);
+      }
     }
   });
 }
@@ -115,38 +147,54 @@ double distance_in_cell(const SparseGrid& grid, const Cell& cell, const Vec3& pl
   return std::abs(value) / slope.norm();
 }
 
+// |f| / |grad f| (m) at the probes where mesh and field do not agree which side they are on; -1 at the others.
+std::vector<double> depths_on_wrong_side(const MetaballField& field, const SparseGrid& grid,
+                                         const std::vector<Probe>& probes) {
+  std::vector<double> depths(probes.size(), -1);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (int p = 0; p < static_cast<int>(probes.size()); ++p) {
+    const Vec3 x = grid.position({0, 0, 0}) + grid.spacing() * probes[p].coordinates;
+    Vec3 gradient;
+    const double f = field.value(x, gradient);
+    if (probes[p].winding == (f > 0 ? 1 : 0)) continue;
+    const double slope = gradient.norm();
+    depths[p] = slope > 0 ? std::abs(f) / slope : std::numeric_limits<double>::infinity();
+  }
+  return depths;
+}
+
 }  // namespace
 
 std::vector<Cell> disagreeing_cells(const MetaballField& field, const SparseGrid& grid, double depth,
-                                    const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                                    std::vector<Cell>* shallow) {
-  std::array<std::vector<GridCrossing>, 3> crossings;
-  for (int axis = 0; axis < 3; ++axis) crossings[axis] = grid_crossings(grid, axis, positions, triangles);
-
+                                    const GridCrossings& crossings, std::vector<Cell>* shallow) {
   std::vector<Probe> probes = probe_nodes(grid, crossings[2]);
   for (int axis = 0; axis < 3; ++axis) probe_edges(crossings[axis], axis, probes);
-
-  std::vector<char> disagrees(probes.size()), differs(probes.size());
-#pragma omp parallel for schedule(dynamic, 64)
-  for (int p = 0; p < static_cast<int>(probes.size()); ++p) {
-    const Probe& probe = probes[p];
-    const Vec3 x = grid.position({0, 0, 0}) + grid.spacing() * probe.coordinates;
-    Vec3 gradient;
-    const double f = field.value(x, gradient);
-    differs[p] = probe.winding != (f > 0 ? 1 : 0);
-    disagrees[p] = differs[p] && (probe.winding < 0 || probe.winding > 1 || std::abs(f) > depth * gradient.norm());
-  }
+  const std::vector<double> depths = depths_on_wrong_side(field, grid, probes);
   std::vector<Cell> cells;
   for (std::size_t p = 0; p < probes.size(); ++p) {
-    if (disagrees[p] || (shallow && differs[p])) add_cells_around(probes[p], disagrees[p] ? cells : *shallow);
+    if (depths[p] < 0) continue;
+    const bool covered_twice = probes[p].winding < 0 || probes[p].winding > 1;
+    const bool deep = covered_twice || depths[p] > depth;
+    if (deep || shallow) add_cells_around(probes[p], deep ? cells : *shallow);
   }
   return cells;
 }
 
-std::vector<Cell> hidden_cells(const SparseGrid& grid, const std::vector<Vec3>& positions,
-                               const std::vector<Triangle>& triangles) {
+std::vector<Cell> displaced_cells(const MetaballField& field, const SparseGrid& grid, double apart,
+                                  const GridCrossings& crossings) {
   std::vector<Probe> probes;
-  for (int axis = 0; axis < 3; ++axis) probe_edges(grid_crossings(grid, axis, positions, triangles), axis, probes);
+  for (int axis = 0; axis < 3; ++axis) probe_beside(grid, crossings[axis], axis, apart, probes);
+  const std::vector<double> depths = depths_on_wrong_side(field, grid, probes);
+  std::vector<Cell> cells;
+  for (std::size_t p = 0; p < probes.size(); ++p) {
+    if (depths[p] >= 0) add_cells_around(probes[p], cells);
+  }
+  return cells;
+}
+
+std::vector<Cell> hidden_cells(const GridCrossings& crossings) {
+  std::vector<Probe> probes;
+  for (int axis = 0; axis < 3; ++axis) probe_edges(crossings[axis], axis, probes);
   std::vector<Cell> cells;
   for (const Probe& probe : probes) add_cells_around(probe, cells);
   return cells;

@@ -7,6 +7,7 @@
 #include "tracking/extraction/cell_set.h"
 #include "tracking/field/metaball_field.h"
 #include "tracking/mesh/surface_mesh.h"
+#include "tracking/topology/grid_crossings.h"
 
 namespace flowskin::tracking {
 
@@ -15,15 +16,22 @@ namespace flowskin::tracking {
 /// grid edge: so sheets closer to each other than a cell are seen, too. A place counts only where it is deeper than
 /// `depth` (m) by |f| / |grad f|: triangles cut corners of a curved surface.
 /// @param grid of the field
+/// @param crossings of all triangles of the mesh
 /// @param shallow cells with a place that is less deep are added
 /// @pre The mesh is closed.
 std::vector<CellSet::Cell> disagreeing_cells(const MetaballField& field, const SparseGrid& grid, double depth,
-                                             const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                                             const GridCrossings& crossings,
                                              std::vector<CellSet::Cell>* shallow = nullptr);
 
+/// The cells at grid edges that mesh and field cross at places farther from each other than `apart` (cells, below 1):
+/// the mesh cuts off a ridge there, or bridges a groove, however shallow.
+/// @param crossings of all triangles of the mesh, or of some
+std::vector<CellSet::Cell> displaced_cells(const MetaballField& field, const SparseGrid& grid, double apart,
+                                           const GridCrossings& crossings);
+
 /// The cells at grid edges that the mesh crosses more than once: marching cubes sees nothing of what is between.
-std::vector<CellSet::Cell> hidden_cells(const SparseGrid& grid, const std::vector<Vec3>& positions,
-                                        const std::vector<Triangle>& triangles);
+/// @param crossings of all triangles of the mesh
+std::vector<CellSet::Cell> hidden_cells(const GridCrossings& crossings);
 
 /// The cells with vertices that the grid knows nothing of: its values, interpolated in the cell of the vertex, put the
 /// surface farther from there than `reach` (in cells), or into another cell. Films, threads and gaps thinner than a

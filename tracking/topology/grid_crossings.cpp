@@ -85,4 +85,10 @@ std::vector<GridCrossing> grid_crossings(const SparseGrid& grid, int axis, const
   return crossings;
 }
 
+GridCrossings grid_crossings(const SparseGrid& grid, const std::vector<Vec3>& positions,
+                             const std::vector<Triangle>& triangles) {
+  return {grid_crossings(grid, 0, positions, triangles), grid_crossings(grid, 1, positions, triangles),
+          grid_crossings(grid, 2, positions, triangles)};
+}
+
 }  // namespace flowskin::tracking

@@ -24,6 +24,11 @@ struct GridCrossing {
 std::vector<GridCrossing> grid_crossings(const SparseGrid& grid, int axis, const std::vector<Vec3>& positions,
                                          const std::vector<Triangle>& triangles);
 
+/// Of the lines along each axis.
+using GridCrossings = std::array<std::vector<GridCrossing>, 3>;
+GridCrossings grid_crossings(const SparseGrid& grid, const std::vector<Vec3>& positions,
+                             const std::vector<Triangle>& triangles);
+
 /// Calls visit(line of crossings: begin, end) for each line that has any.
 template <class Visit>
 void for_each_line(const std::vector<GridCrossing>& crossings, const Visit& visit) {

@@ -1,7 +1,7 @@
 #include "tracking/topology/patch_crossings.h"
 
 #include <algorithm>
-#include <limits>
+#include <utility>
 
 #include "tracking/mesh/self_intersections.h"
 
@@ -12,31 +12,32 @@ SurfaceGeometry geometry_of(const MeshToMend& mesh, const MeshPatch& patch, cons
   SurfaceGeometry geometry;
   geometry.triangles = patch.triangles;
   for (int t : others) geometry.triangles.push_back(mesh.triangles[t]);
-  std::vector<int> used;
-  for (const Triangle& triangle : geometry.triangles) used.insert(used.end(), triangle.begin(), triangle.end());
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  geometry.positions.reserve(used.size());
-  for (int vertex : used)
-    geometry.positions.push_back(vertex < count ? mesh.positions[vertex] : patch.born[vertex - count]);
+  std::vector<int> number(mesh.positions.size() + patch.born.size(), -1);
   for (Triangle& triangle : geometry.triangles) {
-    for (int& vertex : triangle)
-      vertex = static_cast<int>(std::lower_bound(used.begin(), used.end(), vertex) - used.begin());
+    for (int& vertex : triangle) {
+      int& local = number[vertex];
+      if (local < 0) {
+        local = static_cast<int>(geometry.positions.size());
+        geometry.positions.push_back(vertex < count ? mesh.positions[vertex] : patch.born[vertex - count]);
+      }
+      vertex = local;
+    }
   }
   return geometry;
 }
 
 std::vector<CellSet::Cell> PatchCrossings::cells(const MeshPatch& patch) const {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
   const SurfaceGeometry alone = geometry_of(mesh_, patch);
-  for (const Vec3& x : alone.positions) {
-    low = low.cwiseMin(grid_.coordinates(x));
-    high = high.cwiseMax(grid_.coordinates(x));
+  std::vector<CellSet::Cell> taken;
+  for (const Triangle& triangle : alone.triangles) {
+    const Box box = box_of(grid_, triangle, alone.positions);
+    add_cells(box.low, box.high, taken);
   }
-  const Box around{low, high};
+  const CellSet around(std::move(taken));
   std::vector<int> others;
   for (int t : near_) {
-    if (!std::binary_search(patch.removed.begin(), patch.removed.end(), t) && mesh_.boxes[t].overlaps(around))
+    if (!std::binary_search(patch.removed.begin(), patch.removed.end(), t) &&
+        meets(around, mesh_.boxes[t].low, mesh_.boxes[t].high))
       others.push_back(t);
   }
   const SurfaceGeometry all = geometry_of(mesh_, patch, others);

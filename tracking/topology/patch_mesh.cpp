@@ -59,6 +59,7 @@ int PatchMesh::opposite(int a, int b) const {
 }
 
 bool PatchMesh::is_fixed(int a, int b) const {
+  if (!is_fixed_vertex_[a] || !is_fixed_vertex_[b]) return false;
   const std::array<int, 2> edge = {std::min(a, b), std::max(a, b)};
   return std::find(fixed_edges_.begin(), fixed_edges_.end(), edge) != fixed_edges_.end();
 }

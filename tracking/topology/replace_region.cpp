@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 #include <initializer_list>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -10,121 +11,19 @@
 #include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/topology/improve_patch.h"
+#include "tracking/topology/mesh_hole.h"
 #include "tracking/topology/patch_crossings.h"
 #include "tracking/topology/patch_mesh.h"
 
 namespace flowskin::tracking {
 namespace {
 
-constexpr int kSurroundings = 3;   // layers of cells around the hole that are looked at
 constexpr int kMargin = 3;         // layers of cells by which the fresh surface overlaps the rest of the mesh
 constexpr double kReach = 0.75;    // between the two surfaces at the border, in cells
 constexpr double kSameSide = 0.5;  // cosine between normals of one sheet
 constexpr double kNear = 0.4;      // cells that evening may carry the surface away from where marching cubes put it
+constexpr double kMissed = 0.35;   // cells; the fresh surface is not to be farther from the mesh at the border
 constexpr int kFreezings = 5;      // of places where evening does harm
-constexpr int kPinchRounds = 30;
-
-using Side = std::pair<int, int>;  // of a triangle, from one corner to the next
-
-Side side(const Triangle& triangle, int corner) { return {triangle[corner], triangle[(corner + 1) % 3]}; }
-
-// The surroundings of the hole, and the hole.
-class Hole {
- public:
-  Hole(const CellSet& cells, const MeshToMend& mesh) {
-    const CellSet around = cells.dilated(kSurroundings);
-    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-      const Box& box = mesh.boxes[t];
-      if (!mesh.alive[t] || !meets(around, box.low, box.high)) continue;
-      near_.push_back(t);
-      is_removed_.push_back(meets(cells, box.low, box.high));
-      for (int corner = 0; corner < 3; ++corner) {
-        owner_[side(mesh.triangles[t], corner)] = static_cast<int>(near_.size()) - 1;
-        stars_[mesh.triangles[t][corner]].push_back(static_cast<int>(near_.size()) - 1);
-      }
-    }
-  }
-
-  // Widens the hole until its border is made of simple loops. False where that leads out of the surroundings.
-  bool smooth_border(const MeshToMend& mesh, Misfit& misfit) {
-    misfit.why = "the hole has no simple border";
-    for (int round = 0; round < kPinchRounds; ++round) {
-      if (!find_border(mesh, misfit)) return false;
-      std::map<int, int> starts;
-      for (const Side& s : border_) ++starts[s.first];
-      bool changed = remove_tongues(mesh);
-      for (const auto& [vertex, count] : starts) {
-        if (count < 2) continue;
-        for (int n : stars_[vertex]) is_removed_[n] = 1;
-        changed = true;
-      }
-      if (!changed) {
-        misfit = {};
-        return true;
-      }
-    }
-    for (const Side& s : border_)
-      add_cells(mesh.boxes[near_[owner_.at(s)]].low, mesh.boxes[near_[owner_.at(s)]].high, misfit.cells);
-    return false;
-  }
-
-  // Sides of removed triangles whose other side stays.
-  const std::vector<Side>& border() const { return border_; }
-
-  std::vector<int> removed() const { return triangles(true); }
-  // Triangles near the hole that stay.
-  std::vector<int> kept() const { return triangles(false); }
-
- private:
-  std::vector<int> triangles(bool removed) const {
-    std::vector<int> found;
-    for (std::size_t n = 0; n < near_.size(); ++n) {
-      if ((is_removed_[n] != 0) == removed) found.push_back(near_[n]);
-    }
-    return found;
-  }
-
-  bool find_border(const MeshToMend& mesh, Misfit& misfit) {
-    border_.clear();
-    for (std::size_t n = 0; n < near_.size(); ++n) {
-      if (!is_removed_[n]) continue;
-      for (int corner = 0; corner < 3; ++corner) {
-        const Side s = side(mesh.triangles[near_[n]], corner);
-        const auto other = owner_.find({s.second, s.first});
-        if (other == owner_.end()) {
-          add_cells(mesh.boxes[near_[n]].low, mesh.boxes[near_[n]].high, misfit.cells);
-          return false;
-        }
-        if (!is_removed_[other->second]) border_.push_back(s);
-      }
-    }
-    return true;
-  }
-
-  // Triangles that stay with at most one neighbour.
-  bool remove_tongues(const MeshToMend& mesh) {
-    bool any = false;
-    for (std::size_t n = 0; n < near_.size(); ++n) {
-      if (is_removed_[n]) continue;
-      int open = 0;
-      for (int corner = 0; corner < 3; ++corner) {
-        const Side s = side(mesh.triangles[near_[n]], corner);
-        const auto other = owner_.find({s.second, s.first});
-        open += other != owner_.end() && is_removed_[other->second];
-      }
-      if (open < 2) continue;
-      is_removed_[n] = 1;
-      any = true;
-    }
-    return any;
-  }
-
-  std::vector<int> near_;         // triangles of the mesh
-  std::vector<char> is_removed_;  // one each
-  std::map<Side, int> owner_;     // number in near_
-  std::map<int, std::vector<int>> stars_;
-  std::vector<Side> border_;
-};
 
 // Fits the border of the hole into the fresh surface and takes what lies within.
 class Filling {
@@ -294,6 +193,13 @@ bool fits_the_rest(const FieldGrid& fresh, const MeshToMend& mesh, const std::ve
   return false;
 }
 
+// Of the triangles around a hole, those that the patch does not remove, too.
+std::vector<int> staying(const std::vector<int>& kept, const MeshPatch& patch) {
+  std::vector<int> found;
+  std::set_difference(kept.begin(), kept.end(), patch.removed.begin(), patch.removed.end(), std::back_inserter(found));
+  return found;
+}
+
 // Where an evened patch is not any more where marching cubes put it: vertices of either that are far from the other.
 std::vector<CellSet::Cell> strayed_cells(const FieldGrid& fresh, const MeshToMend& mesh, const MeshPatch& raw,
                                          const MeshPatch& evened) {
@@ -311,31 +217,48 @@ std::vector<CellSet::Cell> strayed_cells(const FieldGrid& fresh, const MeshToMen
   return cells;
 }
 
+// Where the rest of the mesh and the patch together miss vertices of the fresh surface: at its border the patch is made
+// of the mesh's vertices, which may cut off a ridge.
+std::vector<CellSet::Cell> missed_cells(const FieldGrid& fresh, const CellSet& cells, const std::vector<Vec3>& expected,
+                                        const SurfaceGeometry& found) {
+  const double reach = kMissed * fresh.grid.spacing();
+  const ClosestPointTree tree(found.positions, found.triangles);
+  std::vector<CellSet::Cell> missed;
+  for (const Vec3& x : expected) {
+    const Vec3 place = fresh.grid.coordinates(x);
+    if (meets(cells, place, place) && tree.distance(x, reach) > reach) add_cells(place, place, missed);
+  }
+  return missed;
+}
+
 // The patch, evened out wherever that makes it intersect nothing and cuts no feature off; else the raw one.
 MeshPatch improved(const FieldGrid& fresh, const MeshToMend& mesh, const std::vector<int>& kept, const MeshPatch& patch,
                    Misfit& misfit) {
   const PatchCrossings crossings(fresh.grid, mesh, kept);
-  MeshPatch best;
+  std::optional<MeshPatch> raw;
   for (const Finish finish : {Finish::evened, Finish::merged}) {
     CellSet frozen;
     for (int attempt = 0; attempt < kFreezings; ++attempt) {
-      best = patch;
-      improve_patch(fresh, mesh, kept, finish, frozen, best);
-      std::vector<CellSet::Cell> bad = strayed_cells(fresh, mesh, patch, best);
-      const std::vector<CellSet::Cell> crossing = crossings.cells(best);
+      MeshPatch evened = patch;
+      improve_patch(fresh, mesh, kept, finish, frozen, evened);
+      std::vector<CellSet::Cell> bad = strayed_cells(fresh, mesh, patch, evened);
+      const std::vector<CellSet::Cell> crossing = crossings.cells(evened);
       bad.insert(bad.end(), crossing.begin(), crossing.end());
-      if (bad.empty()) return best;
-      const CellSet wider = CellSet(std::move(bad)).dilated(attempt / 2);
-      std::vector<CellSet::Cell> all = frozen.cells();
-      all.insert(all.end(), wider.cells().begin(), wider.cells().end());
-      frozen = CellSet(std::move(all));
+      if (bad.empty()) return evened;
+      if (!raw) {
+        raw = patch;
+        improve_patch(fresh, mesh, kept, Finish::raw, {}, *raw);
+        misfit.cells = crossings.cells(*raw);
+        // Where even the raw one intersects something, freezing does not help.
+        if (!misfit.cells.empty()) {
+          misfit.why = "the fresh surface passes through the rest of the mesh";
+          return *raw;
+        }
+      }
+      frozen = frozen.united(CellSet(std::move(bad)).dilated(attempt / 2));
     }
   }
-  best = patch;
-  improve_patch(fresh, mesh, kept, Finish::raw, {}, best);
-  misfit.cells = crossings.cells(best);
-  if (!misfit.cells.empty()) misfit.why = "the fresh surface passes through the rest of the mesh";
-  return best;
+  return *raw;
 }
 
 }  // namespace
@@ -345,13 +268,22 @@ Box box_of(const SparseGrid& grid, const Triangle& triangle, const std::vector<V
   return {grid.coordinates(box.low), grid.coordinates(box.high)};
 }
 
+std::vector<Box> boxes_of(const SparseGrid& grid, const SurfaceMesh& mesh) {
+  std::vector<Box> boxes(mesh.triangles.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t t = 0; t < std::ssize(boxes); ++t) boxes[t] = box_of(grid, mesh.triangles[t], mesh.positions);
+  return boxes;
+}
+
 std::optional<MeshPatch> replace_region(const FieldGrid& fresh, const CellSet& cells, const MeshToMend& mesh,
                                         Misfit& misfit) {
   misfit = {};
-  Hole hole(cells, mesh);
+  MeshHole hole(cells, mesh);
   if (!hole.smooth_border(mesh, misfit)) return std::nullopt;
   const auto value = [&](const Vec3& x) { return fresh.field.value(x); };
-  Filling filling(fresh, cells, march(fresh.grid, cells.dilated(kMargin), value));
+  SurfaceGeometry surface = march(fresh.grid, cells.dilated(kMargin), value);
+  const std::vector<Vec3> expected = surface.positions;
+  Filling filling(fresh, cells, std::move(surface));
   const std::vector<int> kept = hole.kept();
   if (!filling.fit(mesh, hole.border(), misfit) || !filling.fill(mesh, hole.border(), kept, misfit))
     return std::nullopt;
@@ -360,7 +292,12 @@ std::optional<MeshPatch> replace_region(const FieldGrid& fresh, const CellSet& c
   patch.removed = hole.removed();
   filling.collect(static_cast<int>(mesh.positions.size()), patch);
   if (!fits_the_rest(fresh, mesh, kept, patch, misfit)) return std::nullopt;
-  return improved(fresh, mesh, kept, patch, misfit);
+  patch = improved(fresh, mesh, kept, patch, misfit);
+  if (misfit.cells.empty()) {
+    misfit.why = "the border of the hole cuts off a part of the fresh surface";
+    misfit.cells = missed_cells(fresh, cells.dilated(1), expected, geometry_of(mesh, patch, staying(kept, patch)));
+  }
+  return patch;
 }
 
 }  // namespace flowskin::tracking

@@ -8,6 +8,7 @@
 #include "tracking/extraction/cell_set.h"
 #include "tracking/field/metaball_field.h"
 #include "tracking/mesh/triangle_tree.h"
+#include "tracking/topology/triangle_bins.h"
 
 namespace flowskin::tracking {
 
@@ -28,6 +29,9 @@ struct FieldGrid {
 /// The box around a triangle, in grid coordinates.
 Box box_of(const SparseGrid& grid, const Triangle& triangle, const std::vector<Vec3>& positions);
 
+/// Of all triangles.
+std::vector<Box> boxes_of(const SparseGrid& grid, const SurfaceMesh& mesh);
+
 /// A mesh in which regions are being replaced.
 struct MeshToMend {
   std::vector<Vec3> positions;  ///< m
@@ -35,6 +39,7 @@ struct MeshToMend {
   std::vector<Triangle> triangles;
   std::vector<Box> boxes;   ///< One a triangle.
   std::vector<char> alive;  ///< One a triangle; 0: removed.
+  TriangleBins bins;        ///< The triangles, removed ones too.
 };
 
 /// Why a region cannot be replaced as it is.

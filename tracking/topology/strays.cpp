@@ -5,6 +5,7 @@
 
 #include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/mesh_measures.h"
+#include "tracking/topology/where_true.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -14,39 +15,40 @@ constexpr double kSameSide = 0.5;
 std::vector<Triangle> triangles_in(const CellSet& cells, const SparseGrid& grid, const std::vector<Vec3>& positions,
                                    const std::vector<Triangle>& triangles) {
   std::vector<Triangle> found;
-  for (const Triangle& triangle : triangles) {
-    const Vec3 x = grid.coordinates(positions[triangle[0]]);
-    if (meets(cells, x, x)) found.push_back(triangle);
-  }
+  for (int t : where_true(triangles.size(), [&](int i) {
+         const Vec3 x = grid.coordinates(positions[triangles[i][0]]);
+         return meets(cells, x, x);
+       }))
+    found.push_back(triangles[t]);
   return found;
 }
 
 }  // namespace
 
 Strays::Strays(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
-               const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh, const CellSet* where) {
-  if (where && where->empty()) return;
-  if (!where) {
-    measure(grid, farthest, positions, triangles, fresh.positions, fresh.triangles, nullptr);
-    measure(grid, farthest, fresh.positions, fresh.triangles, positions, triangles, nullptr);
-    return;
-  }
+               const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh) {
+  measure(grid, farthest, positions, triangles, fresh.positions, fresh.triangles, nullptr);
+  measure(grid, farthest, fresh.positions, fresh.triangles, positions, triangles, nullptr);
+}
+
+Strays::Strays(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
+               const std::vector<Triangle>& triangles, const CellSet& where, const ScalarFunction& field) {
+  if (where.empty()) return;
   // Whatever may be near enough or bear on the normals.
-  const CellSet around = where->dilated(1 + static_cast<int>(std::ceil(farthest / grid.spacing())));
-  const std::vector<Triangle> near = triangles_in(around, grid, positions, triangles);
-  const std::vector<Triangle> near_fresh = triangles_in(around, grid, fresh.positions, fresh.triangles);
-  measure(grid, farthest, positions, near, fresh.positions, near_fresh, where);
-  measure(grid, farthest, fresh.positions, near_fresh, positions, near, where);
+  const int layers = static_cast<int>(std::ceil(farthest / grid.spacing()));
+  const SurfaceGeometry fresh = march(grid, where.dilated(layers), field);
+  const std::vector<Triangle> near = triangles_in(where.dilated(1 + layers), grid, positions, triangles);
+  measure(grid, farthest, positions, near, fresh.positions, fresh.triangles, &where);
+  measure(grid, farthest, fresh.positions, fresh.triangles, positions, near, &where);
 }
 
 void Strays::measure(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
                      const std::vector<Triangle>& triangles, const std::vector<Vec3>& other_positions,
                      const std::vector<Triangle>& other_triangles, const CellSet* where) {
-  std::vector<int> vertices;
-  for (int v = 0; v < static_cast<int>(positions.size()); ++v) {
+  const std::vector<int> vertices = where_true(positions.size(), [&](int v) {
     const Vec3 x = grid.coordinates(positions[v]);
-    if (!where || meets(*where, x, x)) vertices.push_back(v);
-  }
+    return !where || meets(*where, x, x);
+  });
   const ClosestPointTree other(other_positions, other_triangles);
   const std::vector<Vec3> normals = vertex_normals(positions, triangles);
   const std::size_t first = places_.size();

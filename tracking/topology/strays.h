@@ -14,9 +14,11 @@ namespace flowskin::tracking {
 class Strays {
  public:
   /// @param farthest distances are measured up to here (m)
-  /// @param where only the vertices in these cells are looked at; null: all
   Strays(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
-         const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh, const CellSet* where = nullptr);
+         const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh);
+  /// Only of the vertices in some cells, against the fresh surface around them with its vertices on the field's roots.
+  Strays(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
+         const std::vector<Triangle>& triangles, const CellSet& where, const ScalarFunction& field);
   /// Cells with a vertex that is so far or farther. @pre reach <= farthest
   std::vector<CellSet::Cell> farther_than(double reach) const;
 
