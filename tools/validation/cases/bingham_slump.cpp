@@ -20,7 +20,7 @@ constexpr double end = 2;             // s
 // section balances it: d/dx(rho g h^2 / 2 - c tau_y h) = -tau_y, so h^2 - 2 c s h = 2 s (front - x) with s = tau_y /
 // (rho g). For a very shallow heap c = 0 [Liu and Mei 1989]. As it spreads, the stress along x exceeds the vertical one
 // by 2 sqrt(tau_y^2 - tau^2), with the shear tau growing linearly from the surface to the base: integrated over the
-// height that is pi / 2 tau_y h, so c = pi / 2 [Nye 1951; Dubash et al. 2009]. The heap then ends in a cliff 2 c s
+// height that is pi / 2 tau_y h, so c = pi / 2 (as Nye 1951; not checked). The heap then ends in a cliff 2 c s
 // high.
 struct FinalShape {
   double slope = yield_stress / (1000 * gravity), cliff = 0, front = 0;
