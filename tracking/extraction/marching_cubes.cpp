@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "tracking/extraction/cell_triangles.h"
@@ -60,6 +61,21 @@ Vec3 vertex_on_edge(const SparseGrid& grid, SparseGrid::Index node, int axis, do
   // The clamp also catches a root that rounding made NaN.
   const double t = root > kNodeClearance ? std::min(root, 1 - kNodeClearance) : kNodeClearance;
   return low + t * (high - low);
+}
+
+// Appends the triangles of a cell. vertex_on(edge) gives number and place of the vertex on an edge of the cell; it is
+// called once for each edge whose ends are on different sides.
+template <class VertexOn>
+void fill_cell(int pattern, std::vector<Triangle>& triangles, const VertexOn& vertex_on) {
+  const CellTables& tables = cell_tables();
+  std::array<int, 12> vertices{};
+  std::array<Vec3, 12> places;
+  for (int edge = 0; edge < 12; ++edge) {
+    const auto [low, high] = tables.edge_corners[edge];
+    if ((pattern >> low & 1) != (pattern >> high & 1)) std::tie(vertices[edge], places[edge]) = vertex_on(edge);
+  }
+  for (const auto& [i, j, k] : triangles_of_cell(pattern, places))
+    triangles.push_back({vertices[i], vertices[j], vertices[k]});
 }
 
 class Marcher {
@@ -161,20 +177,14 @@ class Marcher {
 
   void place_cell(int b, const SparseGrid::Index& cell, int pattern) {
     const CellTables& tables = cell_tables();
-    std::array<int, 12> vertices{};
-    std::array<Vec3, 12> places;
-    for (int edge = 0; edge < 12; ++edge) {
-      const auto [start, end] = tables.edge_corners[edge];
-      if ((pattern >> start & 1) == (pattern >> end & 1)) continue;
+    fill_cell(pattern, surfaces_[b].triangles, [&](int edge) {
+      const int start = tables.edge_corners[edge][0];
       int node = 0;
       const int block = locate(b, cell[0] + (start & 1), cell[1] + (start >> 1 & 1), cell[2] + (start >> 2 & 1), node);
       const BlockSurface& owner = surfaces_[block];
       const int vertex = owner.vertex_of_edge[3 * node + edge / 4];
-      vertices[edge] = owner.first_vertex + vertex;
-      places[edge] = owner.positions[vertex];
-    }
-    for (const auto& [i, j, k] : triangles_of_cell(pattern, places))
-      surfaces_[b].triangles.push_back({vertices[i], vertices[j], vertices[k]});
+      return std::pair(owner.first_vertex + vertex, owner.positions[vertex]);
+    });
   }
 
   const SparseGrid& grid_;
@@ -199,21 +209,15 @@ SurfaceGeometry march(const SparseGrid& grid, const CellSet& cells, const Scalar
       values[c] = grid.value(corners[c]);
       pattern |= values[c] > 0 ? 1 << c : 0;
     }
-    std::array<int, 12> vertices{};
-    std::array<Vec3, 12> places;
-    for (int edge = 0; edge < 12; ++edge) {
-      const auto [low, high] = tables.edge_corners[edge];
-      if ((pattern >> low & 1) == (pattern >> high & 1)) continue;
+    fill_cell(pattern, result.triangles, [&](int edge) {
       const int axis = edge / 4;
+      const auto [low, high] = tables.edge_corners[edge];
       const auto [place, is_new] =
           vertex_of_edge.try_emplace({corners[low], axis}, static_cast<int>(result.positions.size()));
       if (is_new)
         result.positions.push_back(vertex_on_edge(grid, corners[low], axis, values[low], values[high], field));
-      vertices[edge] = place->second;
-      places[edge] = result.positions[place->second];
-    }
-    for (const auto& [i, j, k] : triangles_of_cell(pattern, places))
-      result.triangles.push_back({vertices[i], vertices[j], vertices[k]});
+      return std::pair(place->second, result.positions[place->second]);
+    });
   }
   return result;
 }

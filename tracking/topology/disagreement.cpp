@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tracking/topology/grid_crossings.h"
+#include "tracking/topology/where_true.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -201,16 +202,13 @@ std::vector<Cell> hidden_cells(const GridCrossings& crossings) {
 }
 
 std::vector<Cell> unresolved_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions) {
-  std::vector<char> is_unresolved(positions.size());
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t v = 0; v < std::ssize(is_unresolved); ++v) {
+  const std::vector<int> unresolved = where_true(positions.size(), [&](int v) {
     const Vec3 x = grid.coordinates(positions[v]);
     const Vec3 floor = x.array().floor();
-    is_unresolved[v] = !(distance_in_cell(grid, cell_at(x), x - floor) < reach);
-  }
+    return !(distance_in_cell(grid, cell_at(x), x - floor) < reach);
+  });
   std::vector<Cell> cells;
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    if (!is_unresolved[v]) continue;
+  for (int v : unresolved) {
     const Vec3 x = grid.coordinates(positions[v]);
     add_cells(x, x, cells);
   }

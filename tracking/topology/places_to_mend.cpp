@@ -32,12 +32,13 @@ std::vector<Triangle> chosen(const std::vector<Triangle>& triangles, const std::
 }
 
 // Triangles that are off the surface, without area, or that intersect; and such as are wrong side out, but for fresh
-// ones: a rim of fluid can be thinner than an edge, and the surface then folds sharply.
+// ones: a rim of fluid can be thinner than an edge, and the surface then folds sharply. `triangles` are those with the
+// numbers `looked_at`.
 std::vector<int> spoilt_triangles(const SurfaceMesh& mesh, const Projection& projection,
-                                  const std::vector<int>& looked_at, bool are_fresh) {
+                                  const std::vector<int>& looked_at, const std::vector<Triangle>& triangles,
+                                  bool are_fresh) {
   std::vector<char> failed(mesh.positions.size(), 0), spoilt(looked_at.size());
   for (int vertex : projection.failed) failed[vertex] = 1;
-  const std::vector<Triangle> triangles = chosen(mesh.triangles, looked_at);
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t i = 0; i < std::ssize(looked_at); ++i) {
     const Triangle& triangle = triangles[i];
@@ -71,8 +72,9 @@ std::vector<int> narrow_triangles(const SurfaceMesh& mesh) {
 std::vector<CellSet> PlacesToMend::find(const SurfaceMesh& mesh, const Projection& projection) {
   const std::vector<Box> boxes = boxes_of(fresh_.grid, mesh);
   const std::vector<int> looked_at = triangles_in(focus_ ? &*focus_ : nullptr, boxes);
-  std::vector<CellSet::Cell> cells = disagreements(mesh, looked_at);
-  std::vector<int> spoilt = spoilt_triangles(mesh, projection, looked_at, focus_.has_value());
+  const std::vector<Triangle> triangles = chosen(mesh.triangles, looked_at);
+  std::vector<CellSet::Cell> cells = disagreements(mesh, triangles);
+  std::vector<int> spoilt = spoilt_triangles(mesh, projection, looked_at, triangles, focus_.has_value());
   if (!focus_) {
     const std::vector<int> narrow = narrow_triangles(mesh);
     spoilt.insert(spoilt.end(), narrow.begin(), narrow.end());
@@ -83,8 +85,8 @@ std::vector<CellSet> PlacesToMend::find(const SurfaceMesh& mesh, const Projectio
 }
 
 std::vector<CellSet::Cell> PlacesToMend::disagreements(const SurfaceMesh& mesh,
-                                                       const std::vector<int>& looked_at) const {
-  const GridCrossings crossings = grid_crossings(fresh_.grid, mesh.positions, chosen(mesh.triangles, looked_at));
+                                                       const std::vector<Triangle>& looked_at) const {
+  const GridCrossings crossings = grid_crossings(fresh_.grid, mesh.positions, looked_at);
   std::vector<CellSet::Cell> cells, doubtful = displaced_cells(fresh_.field, fresh_.grid, kFarApart, crossings);
   // Fresh surface agrees with the signs of the grid.
   if (!focus_) {

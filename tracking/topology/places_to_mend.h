@@ -33,7 +33,7 @@ class PlacesToMend {
   std::vector<CellSet> find_hidden(const SurfaceMesh& mesh, const SurfaceGeometry& expected);
 
  private:
-  std::vector<CellSet::Cell> disagreements(const SurfaceMesh& mesh, const std::vector<int>& looked_at) const;
+  std::vector<CellSet::Cell> disagreements(const SurfaceMesh& mesh, const std::vector<Triangle>& looked_at) const;
   std::vector<CellSet::Cell> strays_in(const CellSet& places, const SurfaceMesh& mesh) const;
   CellSet widened_where_named_again(const CellSet& named);
   std::vector<CellSet> regions(const CellSet& places);

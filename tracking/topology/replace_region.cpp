@@ -294,8 +294,8 @@ std::optional<MeshPatch> replace_region(const FieldGrid& fresh, const CellSet& c
   if (!fits_the_rest(fresh, mesh, kept, patch, misfit)) return std::nullopt;
   patch = improved(fresh, mesh, kept, patch, misfit);
   if (misfit.cells.empty()) {
-    misfit.why = "the border of the hole cuts off a part of the fresh surface";
     misfit.cells = missed_cells(fresh, cells.dilated(1), expected, geometry_of(mesh, patch, staying(kept, patch)));
+    if (!misfit.cells.empty()) misfit.why = "the border of the hole cuts off a part of the fresh surface";
   }
   return patch;
 }
