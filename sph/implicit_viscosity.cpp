@@ -64,8 +64,7 @@ struct ImplicitViscosity::Loops {
 
   template <typename Function>
   void for_clusters(Function function) const {
-    const int piece = static_cast<int>(1 + clusters.size() / (10 * static_cast<std::size_t>(omp_get_max_threads())));
-#pragma omp parallel for schedule(dynamic, piece) num_threads(threads_for(problem.fluid.size()))
+#pragma omp parallel for schedule(static) num_threads(threads_for(problem.fluid.size()))
     for (std::size_t c = 0; c < clusters.size(); ++c) function(c);
   }
 

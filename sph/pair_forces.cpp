@@ -230,18 +230,13 @@ inline void add_wall(const SplatCoefficients& c, const Targets& i, const WallPac
   }
 }
 
-// Clusters that a thread takes at a time: few large pieces of the curve, so that threads seldom read what another one
-// has just written, but enough of them to even out the work.
-int piece_of(std::size_t clusters) {
-  return static_cast<int>(1 + clusters / (10 * static_cast<std::size_t>(omp_get_max_threads())));
-}
-
+// Loops over clusters take equal shares, the same in each: so a particle stays in the cache of one core from stage to
+// stage. (Pieces taken as they come balance better, and were slower: two threads 1.66 instead of 1.88 times as fast.)
 template <typename Kernel, typename Viscosity, bool continuity, Drift drift, bool periodic>
 void run_forces(const PairCoefficients& coefficients, const PairData& data) {
   const SplatCoefficients c(coefficients);
   const PointClusters& clusters = *data.clusters;
-  const int piece = piece_of(clusters.size());
-#pragma omp parallel for schedule(dynamic, piece) num_threads(threads_for(data.fluid.size()))
+#pragma omp parallel for schedule(static) num_threads(threads_for(data.fluid.size()))
   for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
     Targets targets(&data.fluid[first], count);
@@ -289,8 +284,7 @@ template <typename Kernel, bool periodic>
 void run_densities(const PairCoefficients& coefficients, const PairData& data) {
   const SplatCoefficients c(coefficients);
   const PointClusters& clusters = *data.clusters;
-  const int piece = piece_of(clusters.size());
-#pragma omp parallel for schedule(dynamic, piece) num_threads(threads_for(data.fluid.size()))
+#pragma omp parallel for schedule(static) num_threads(threads_for(data.fluid.size()))
   for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
     const std::uint32_t first = clusters[cluster].first, count = clusters[cluster].count;
     Targets i(&data.fluid[first], count);
