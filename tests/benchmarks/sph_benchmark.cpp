@@ -164,7 +164,7 @@ BENCHMARK(solver_step)
     ->Args({2, 171})
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
-    ->Iterations(3);
+    ->Iterations(10);
 
 void list_build(benchmark::State& state) {
   std::vector<Eigen::Vector3f> points(100000);

@@ -55,7 +55,7 @@ void ClosestPointTree::search(int index, const Query& query, MeshPoint& best) co
     const double to_right = tree_.nodes()[node.right].box.squared_distance(query.x);
     const bool left_first = to_left <= to_right;
     const auto worthwhile = [&](double squared) {
-      return squared < best.distance * best.distance && best.distance > query.near_enough;
+      return squared < best.distance * best.distance && (best.triangle < 0 || best.distance > query.near_enough);
     };
     if (worthwhile(std::min(to_left, to_right))) search(left_first ? left : node.right, query, best);
     if (worthwhile(std::max(to_left, to_right))) search(left_first ? node.right : left, query, best);
@@ -73,7 +73,7 @@ void ClosestPointTree::search(int index, const Query& query, MeshPoint& best) co
     const double distance = closest_on_triangle(
         query.x, {positions_[triangle[0]], positions_[triangle[1]], positions_[triangle[2]]}, weights);
     if (distance < best.distance) best = {number, weights, distance};
-    if (best.distance <= query.near_enough) return;
+    if (best.triangle >= 0 && best.distance <= query.near_enough) return;
   }
 }
 
@@ -82,6 +82,13 @@ MeshPoint ClosestPointTree::closest(const Vec3& x, double reach, const Vec3& nor
   best.distance = reach;
   if (!tree_.nodes().empty()) search(0, {x, normal, cosine, -1}, best);
   return best;
+}
+
+bool ClosestPointTree::is_near(const Vec3& x, double reach, const Vec3& normal, double cosine) const {
+  MeshPoint best;
+  best.distance = reach;
+  if (!tree_.nodes().empty()) search(0, {x, normal, cosine, reach}, best);
+  return best.triangle >= 0;
 }
 
 double ClosestPointTree::distance(const Vec3& x, double near_enough) const {

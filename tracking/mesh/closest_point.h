@@ -27,6 +27,9 @@ class ClosestPointTree {
   /// with a cosine above `cosine` with it. Of equally near triangles, always the same one is found.
   MeshPoint closest(const Vec3& x, double reach, const Vec3& normal = Vec3::Zero(), double cosine = 0) const;
 
+  /// Whether closest() finds something, which is known sooner than where it is.
+  bool is_near(const Vec3& x, double reach, const Vec3& normal = Vec3::Zero(), double cosine = 0) const;
+
   /// Distance of a point to the mesh (m); any not larger than `near_enough` where that is so near, which is found
   /// sooner. Infinite where the mesh has no triangles.
   double distance(const Vec3& x, double near_enough = -1) const;

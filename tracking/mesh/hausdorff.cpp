@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tracking/mesh/closest_point.h"
+#include "tracking/mesh/mesh_measures.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -22,9 +23,7 @@ double farthest_sample(const ClosestPointTree& tree, std::size_t count, const Sa
 
 double one_sided(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                  const ClosestPointTree& tree, double farthest) {
-  const auto center = [&](int t) {
-    return Vec3((positions[triangles[t][0]] + positions[triangles[t][1]] + positions[triangles[t][2]]) / 3);
-  };
+  const auto center = [&](int t) { return triangle_center(positions, triangles[t]); };
   // Vertices are those of triangles: one that no triangle uses is not on the surface.
   std::vector<char> used(positions.size(), 0);
   for (const Triangle& triangle : triangles) {

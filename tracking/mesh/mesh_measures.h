@@ -51,6 +51,10 @@ inline Vec3 doubled_area_vector(const std::vector<Vec3>& positions, const Triang
   return (positions[triangle[1]] - a).cross(positions[triangle[2]] - a);
 }
 
+inline Vec3 triangle_center(const std::vector<Vec3>& positions, const Triangle& triangle) {
+  return (positions[triangle[0]] + positions[triangle[1]] + positions[triangle[2]]) / 3;
+}
+
 /// Unit outward normals, weighted by area; zero where a vertex has no triangle with an area.
 std::vector<Vec3> vertex_normals(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 

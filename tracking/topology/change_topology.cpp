@@ -264,7 +264,7 @@ TopologyReport change_topology(const MetaballField& field, const Particles& part
     std::vector<CellSet> regions = to_mend.find(mesh, projection);
     if (regions.empty()) {
       report.counts = counts_of(mesh.positions, mesh.triangles, least, cell);
-      if (report.counts == report.expected) break;
+      if (report.counts.agree_with(report.expected)) break;
       regions = to_mend.find_hidden(mesh, expected);
       if (regions.empty()) regions = to_mend.find_strays(mesh, expected);
       if (regions.empty()) break;

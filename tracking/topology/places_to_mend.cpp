@@ -17,7 +17,8 @@ namespace flowskin::tracking {
 namespace {
 
 constexpr double kResolved = 0.2;                    // cells; how well the grid knows the surface where it resolves it
-constexpr double kFarApart = 0.35;                   // cells; the two surfaces are not to be so far from each other
+constexpr double kDisplaced = 0.35;                  // cells, along the edges of the grid: to be looked at
+constexpr double kFarApart = 0.47;                   // cells; the two surfaces are not to be so far from each other
 constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};  // cells; a thin neck is near its stumps
 constexpr double kHiddenShares[] = {0.75, 0.75, 0.4};  // of the trace that a hole leaves
 constexpr double kNarrow = 10 * M_PI / 180;
@@ -87,7 +88,7 @@ std::vector<CellSet> PlacesToMend::find(const SurfaceMesh& mesh, const Projectio
 std::vector<CellSet::Cell> PlacesToMend::disagreements(const SurfaceMesh& mesh,
                                                        const std::vector<Triangle>& looked_at) const {
   const GridCrossings crossings = grid_crossings(fresh_.grid, mesh.positions, looked_at);
-  std::vector<CellSet::Cell> cells, doubtful = displaced_cells(fresh_.field, fresh_.grid, kFarApart, crossings);
+  std::vector<CellSet::Cell> cells, doubtful = displaced_cells(fresh_.field, fresh_.grid, kDisplaced, crossings);
   // Fresh surface agrees with the signs of the grid.
   if (!focus_) {
     cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, crossings, &doubtful);
@@ -101,7 +102,7 @@ std::vector<CellSet::Cell> PlacesToMend::disagreements(const SurfaceMesh& mesh,
 std::vector<CellSet::Cell> PlacesToMend::strays_in(const CellSet& places, const SurfaceMesh& mesh) const {
   const double reach = kFarApart * fresh_.grid.spacing();
   const auto value = [&](const Vec3& x) { return fresh_.field.value(x); };
-  return Strays(fresh_.grid, reach, mesh.positions, mesh.triangles, places, value).farther_than(reach);
+  return stray_cells(fresh_.grid, reach, mesh.positions, mesh.triangles, places, value);
 }
 
 CellSet PlacesToMend::widened_where_named_again(const CellSet& named) {
@@ -123,7 +124,7 @@ CellSet PlacesToMend::widened_where_named_again(const CellSet& named) {
 std::vector<CellSet> PlacesToMend::find_strays(const SurfaceMesh& mesh, const SurfaceGeometry& expected) {
   if (stray_round_ == std::ssize(kStrayReaches)) return {};
   const double spacing = fresh_.grid.spacing();
-  const Strays strays(fresh_.grid, kStrayReaches[stray_round_] * spacing, mesh.positions, mesh.triangles, expected);
+  const Strays strays(fresh_.grid, kStrayReaches[stray_round_] * spacing, {mesh.positions, mesh.triangles}, expected);
   while (stray_round_ < std::ssize(kStrayReaches)) {
     const CellSet cells(strays.farther_than(kStrayReaches[stray_round_++] * spacing));
     if (!cells.empty()) return regions(cells.dilated(1));

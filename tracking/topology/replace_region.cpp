@@ -22,7 +22,7 @@ constexpr int kMargin = 3;         // layers of cells by which the fresh surface
 constexpr double kReach = 0.75;    // between the two surfaces at the border, in cells
 constexpr double kSameSide = 0.5;  // cosine between normals of one sheet
 constexpr double kNear = 0.4;      // cells that evening may carry the surface away from where marching cubes put it
-constexpr double kMissed = 0.35;   // cells; the fresh surface is not to be farther from the mesh at the border
+constexpr double kMissed = 0.47;   // cells; the fresh surface is not to be farther from the mesh at the border
 constexpr int kFreezings = 5;      // of places where evening does harm
 
 // Fits the border of the hole into the fresh surface and takes what lies within.
@@ -217,17 +217,19 @@ std::vector<CellSet::Cell> strayed_cells(const FieldGrid& fresh, const MeshToMen
   return cells;
 }
 
-// Where the rest of the mesh and the patch together miss vertices of the fresh surface: at its border the patch is made
-// of the mesh's vertices, which may cut off a ridge.
-std::vector<CellSet::Cell> missed_cells(const FieldGrid& fresh, const CellSet& cells, const std::vector<Vec3>& expected,
+// Where the rest of the mesh and the patch together miss vertices or triangle centres of the fresh surface: at its
+// border the patch is made of the mesh's vertices, which may cut off a ridge.
+std::vector<CellSet::Cell> missed_cells(const FieldGrid& fresh, const CellSet& cells, const SurfaceGeometry& expected,
                                         const SurfaceGeometry& found) {
   const double reach = kMissed * fresh.grid.spacing();
   const ClosestPointTree tree(found.positions, found.triangles);
   std::vector<CellSet::Cell> missed;
-  for (const Vec3& x : expected) {
+  const auto look_at = [&](const Vec3& x) {
     const Vec3 place = fresh.grid.coordinates(x);
-    if (meets(cells, place, place) && tree.distance(x, reach) > reach) add_cells(place, place, missed);
-  }
+    if (meets(cells, place, place) && !tree.is_near(x, reach)) add_cells(place, place, missed);
+  };
+  for (const Vec3& x : expected.positions) look_at(x);
+  for (const Triangle& triangle : expected.triangles) look_at(triangle_center(expected.positions, triangle));
   return missed;
 }
 
@@ -282,7 +284,7 @@ std::optional<MeshPatch> replace_region(const FieldGrid& fresh, const CellSet& c
   if (!hole.smooth_border(mesh, misfit)) return std::nullopt;
   const auto value = [&](const Vec3& x) { return fresh.field.value(x); };
   SurfaceGeometry surface = march(fresh.grid, cells.dilated(kMargin), value);
-  const std::vector<Vec3> expected = surface.positions;
+  const SurfaceGeometry expected = surface;
   Filling filling(fresh, cells, std::move(surface));
   const std::vector<int> kept = hole.kept();
   if (!filling.fit(mesh, hole.border(), misfit) || !filling.fill(mesh, hole.border(), kept, misfit))

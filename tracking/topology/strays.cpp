@@ -12,52 +12,82 @@ namespace {
 
 constexpr double kSameSide = 0.5;
 
-std::vector<Triangle> triangles_in(const CellSet& cells, const SparseGrid& grid, const std::vector<Vec3>& positions,
-                                   const std::vector<Triangle>& triangles) {
-  std::vector<Triangle> found;
+// Vertices, then triangle centres of a surface, with their normals.
+class Samples {
+ public:
+  explicit Samples(const SurfaceGeometry& surface)
+      : surface_(surface), normals_(vertex_normals(surface.positions, surface.triangles)) {}
+
+  std::size_t count() const { return normals_.size() + surface_.triangles.size(); }
+  Vec3 place(int i) const {
+    return is_vertex(i) ? surface_.positions[i] : triangle_center(surface_.positions, triangle(i));
+  }
+  Vec3 normal(int i) const {
+    return is_vertex(i) ? normals_[i] : doubled_area_vector(surface_.positions, triangle(i)).normalized();
+  }
+
+ private:
+  bool is_vertex(int i) const { return i < std::ssize(normals_); }
+  const Triangle& triangle(int i) const { return surface_.triangles[i - std::ssize(normals_)]; }
+
+  const SurfaceGeometry& surface_;
+  std::vector<Vec3> normals_;
+};
+
+SurfaceGeometry part_in(const CellSet& cells, const SparseGrid& grid, const std::vector<Vec3>& positions,
+                        const std::vector<Triangle>& triangles) {
+  SurfaceGeometry part;
+  std::vector<int> number(positions.size(), -1);
   for (int t : where_true(triangles.size(), [&](int i) {
          const Vec3 x = grid.coordinates(positions[triangles[i][0]]);
          return meets(cells, x, x);
-       }))
-    found.push_back(triangles[t]);
-  return found;
+       })) {
+    Triangle triangle = triangles[t];
+    for (int& vertex : triangle) {
+      if (number[vertex] < 0) {
+        number[vertex] = static_cast<int>(part.positions.size());
+        part.positions.push_back(positions[vertex]);
+      }
+      vertex = number[vertex];
+    }
+    part.triangles.push_back(triangle);
+  }
+  return part;
+}
+
+// The places of a surface in some cells that are farther than `reach` from another one.
+void add_strays(const SparseGrid& grid, double reach, const SurfaceGeometry& surface, const SurfaceGeometry& other,
+                const CellSet& where, std::vector<CellSet::Cell>& cells) {
+  const Samples samples(surface);
+  const ClosestPointTree tree(other.positions, other.triangles);
+  const std::vector<int> far = where_true(samples.count(), [&](int i) {
+    const Vec3 x = samples.place(i), place = grid.coordinates(x);
+    return meets(where, place, place) && !tree.is_near(x, reach, samples.normal(i), kSameSide);
+  });
+  for (int i : far) {
+    const Vec3 place = grid.coordinates(samples.place(i));
+    add_cells(place, place, cells);
+  }
 }
 
 }  // namespace
 
-Strays::Strays(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
-               const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh) {
-  measure(grid, farthest, positions, triangles, fresh.positions, fresh.triangles, nullptr);
-  measure(grid, farthest, fresh.positions, fresh.triangles, positions, triangles, nullptr);
+Strays::Strays(const SparseGrid& grid, double farthest, const SurfaceGeometry& mesh, const SurfaceGeometry& fresh) {
+  measure(grid, farthest, mesh, fresh);
+  measure(grid, farthest, fresh, mesh);
 }
 
-Strays::Strays(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
-               const std::vector<Triangle>& triangles, const CellSet& where, const ScalarFunction& field) {
-  if (where.empty()) return;
-  // Whatever may be near enough or bear on the normals.
-  const int layers = static_cast<int>(std::ceil(farthest / grid.spacing()));
-  const SurfaceGeometry fresh = march(grid, where.dilated(layers), field);
-  const std::vector<Triangle> near = triangles_in(where.dilated(1 + layers), grid, positions, triangles);
-  measure(grid, farthest, positions, near, fresh.positions, fresh.triangles, &where);
-  measure(grid, farthest, fresh.positions, fresh.triangles, positions, near, &where);
-}
-
-void Strays::measure(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
-                     const std::vector<Triangle>& triangles, const std::vector<Vec3>& other_positions,
-                     const std::vector<Triangle>& other_triangles, const CellSet* where) {
-  const std::vector<int> vertices = where_true(positions.size(), [&](int v) {
-    const Vec3 x = grid.coordinates(positions[v]);
-    return !where || meets(*where, x, x);
-  });
-  const ClosestPointTree other(other_positions, other_triangles);
-  const std::vector<Vec3> normals = vertex_normals(positions, triangles);
+void Strays::measure(const SparseGrid& grid, double farthest, const SurfaceGeometry& surface,
+                     const SurfaceGeometry& other) {
+  const Samples samples(surface);
+  const ClosestPointTree tree(other.positions, other.triangles);
   const std::size_t first = places_.size();
-  places_.resize(first + vertices.size());
+  places_.resize(first + samples.count());
 #pragma omp parallel for schedule(dynamic, 256)
-  for (int i = 0; i < static_cast<int>(vertices.size()); ++i) {
-    const int v = vertices[i];
-    const MeshPoint point = other.closest(positions[v], farthest, normals[v], kSameSide);
-    places_[first + i] = {grid.coordinates(positions[v]),
+  for (int i = 0; i < static_cast<int>(samples.count()); ++i) {
+    const Vec3 x = samples.place(i);
+    const MeshPoint point = tree.closest(x, farthest, samples.normal(i), kSameSide);
+    places_[first + i] = {grid.coordinates(x),
                           point.triangle < 0 ? std::numeric_limits<double>::infinity() : point.distance};
   }
 }
@@ -67,6 +97,20 @@ std::vector<CellSet::Cell> Strays::farther_than(double reach) const {
   for (const Place& place : places_) {
     if (!(place.distance < reach)) add_cells(place.coordinates, place.coordinates, cells);
   }
+  return cells;
+}
+
+std::vector<CellSet::Cell> stray_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
+                                       const std::vector<Triangle>& triangles, const CellSet& where,
+                                       const ScalarFunction& field) {
+  std::vector<CellSet::Cell> cells;
+  if (where.empty()) return cells;
+  // Whatever may be near enough or bear on the normals.
+  const int layers = static_cast<int>(std::ceil(reach / grid.spacing()));
+  const SurfaceGeometry fresh = march(grid, where.dilated(layers), field);
+  const SurfaceGeometry near = part_in(where.dilated(1 + layers), grid, positions, triangles);
+  add_strays(grid, reach, near, fresh, where, cells);
+  add_strays(grid, reach, fresh, near, where, cells);
   return cells;
 }
 

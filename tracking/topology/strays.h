@@ -8,18 +8,13 @@
 
 namespace flowskin::tracking {
 
-/// How far the vertices of two surfaces are from the other surface, as far as that looks the same way (at most 60
-/// degrees off). For features
-/// below the size of a cell, which the nodes of a grid do not see.
+/// How far vertices and triangle centres of two surfaces are from the other surface, as far as that looks the same way
+/// (at most 60 degrees off). For features below the size of a cell, which the nodes of a grid do not see.
 class Strays {
  public:
   /// @param farthest distances are measured up to here (m)
-  Strays(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
-         const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh);
-  /// Only of the vertices in some cells, against the fresh surface around them with its vertices on the field's roots.
-  Strays(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
-         const std::vector<Triangle>& triangles, const CellSet& where, const ScalarFunction& field);
-  /// Cells with a vertex that is so far or farther. @pre reach <= farthest
+  Strays(const SparseGrid& grid, double farthest, const SurfaceGeometry& mesh, const SurfaceGeometry& fresh);
+  /// Cells with a place that is so far or farther. @pre reach <= farthest
   std::vector<CellSet::Cell> farther_than(double reach) const;
 
  private:
@@ -27,11 +22,15 @@ class Strays {
     Vec3 coordinates;  // in the grid
     double distance;   // m; infinite: more than the farthest
   };
-  void measure(const SparseGrid& grid, double farthest, const std::vector<Vec3>& positions,
-               const std::vector<Triangle>& triangles, const std::vector<Vec3>& other_positions,
-               const std::vector<Triangle>& other_triangles, const CellSet* where);
+  void measure(const SparseGrid& grid, double farthest, const SurfaceGeometry& surface, const SurfaceGeometry& other);
 
   std::vector<Place> places_;
 };
+
+/// The same for some cells only: those of them with a vertex or triangle centre that is farther than `reach` (m) from
+/// the other surface. The fresh surface has its vertices on the field's roots.
+std::vector<CellSet::Cell> stray_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
+                                       const std::vector<Triangle>& triangles, const CellSet& where,
+                                       const ScalarFunction& field);
 
 }  // namespace flowskin::tracking
