@@ -63,17 +63,23 @@ Vec3 vertex_on_edge(const SparseGrid& grid, SparseGrid::Index node, int axis, do
   return low + t * (high - low);
 }
 
+// Calls visit(edge) for the edges of a cell whose ends are on different sides.
+template <class Visit>
+void for_each_crossed_edge(int pattern, const Visit& visit) {
+  const CellTables& tables = cell_tables();
+  for (int edge = 0; edge < 12; ++edge) {
+    const auto [low, high] = tables.edge_corners[edge];
+    if ((pattern >> low & 1) != (pattern >> high & 1)) visit(edge);
+  }
+}
+
 // Appends the triangles of a cell. vertex_on(edge) gives number and place of the vertex on an edge of the cell; it is
 // called once for each edge whose ends are on different sides.
 template <class VertexOn>
 void fill_cell(int pattern, std::vector<Triangle>& triangles, const VertexOn& vertex_on) {
-  const CellTables& tables = cell_tables();
   std::array<int, 12> vertices{};
   std::array<Vec3, 12> places;
-  for (int edge = 0; edge < 12; ++edge) {
-    const auto [low, high] = tables.edge_corners[edge];
-    if ((pattern >> low & 1) != (pattern >> high & 1)) std::tie(vertices[edge], places[edge]) = vertex_on(edge);
-  }
+  for_each_crossed_edge(pattern, [&](int edge) { std::tie(vertices[edge], places[edge]) = vertex_on(edge); });
   for (const auto& [i, j, k] : triangles_of_cell(pattern, places))
     triangles.push_back({vertices[i], vertices[j], vertices[k]});
 }
@@ -192,34 +198,71 @@ class Marcher {
   std::vector<BlockSurface> surfaces_;
 };
 
-}  // namespace
+// Marches in some cells: edges first, then their roots on all threads, then triangles.
+class CellMarcher {
+ public:
+  CellMarcher(const SparseGrid& grid, const CellSet& cells) : grid_(grid) {
+    for (const CellSet::Cell& cell : cells.cells()) add(cell);
+  }
 
-SurfaceGeometry march(const SparseGrid& grid, const ScalarFunction& field) { return Marcher(grid, field).run(); }
+  SurfaceGeometry run(const ScalarFunction& field) const {
+    SurfaceGeometry result;
+    result.positions.resize(edges_.size());
+#pragma omp parallel for schedule(dynamic, 64)
+    for (std::ptrdiff_t i = 0; i < std::ssize(edges_); ++i) {
+      const Edge& edge = edges_[i];
+      result.positions[i] = vertex_on_edge(grid_, edge.node, edge.axis, edge.low, edge.high, field);
+    }
+    auto vertex = vertices_.begin();
+    for (const int pattern : patterns_) {
+      fill_cell(pattern, result.triangles, [&](int) {
+        const int v = *vertex++;
+        return std::pair(v, result.positions[v]);
+      });
+    }
+    return result;
+  }
 
-SurfaceGeometry march(const SparseGrid& grid, const CellSet& cells, const ScalarFunction& field) {
-  const CellTables& tables = cell_tables();
-  SurfaceGeometry result;
-  std::map<std::pair<SparseGrid::Index, int>, int> vertex_of_edge;
-  for (const CellSet::Cell& cell : cells.cells()) {
+ private:
+  struct Edge {
+    SparseGrid::Index node;
+    int axis;
+    double low, high;  // values at its ends
+  };
+
+  void add(const CellSet::Cell& cell) {
     std::array<SparseGrid::Index, 8> corners{};
     std::array<double, 8> values{};
     int pattern = 0;
     for (int c = 0; c < 8; ++c) {
       corners[c] = {cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2 & 1)};
-      values[c] = grid.value(corners[c]);
+      values[c] = grid_.value(corners[c]);
       pattern |= values[c] > 0 ? 1 << c : 0;
     }
-    fill_cell(pattern, result.triangles, [&](int edge) {
+    if (pattern == 0 || pattern == 255) return;
+    patterns_.push_back(pattern);
+    for_each_crossed_edge(pattern, [&](int edge) {
       const int axis = edge / 4;
-      const auto [low, high] = tables.edge_corners[edge];
-      const auto [place, is_new] =
-          vertex_of_edge.try_emplace({corners[low], axis}, static_cast<int>(result.positions.size()));
-      if (is_new)
-        result.positions.push_back(vertex_on_edge(grid, corners[low], axis, values[low], values[high], field));
-      return std::pair(place->second, result.positions[place->second]);
+      const auto [low, high] = cell_tables().edge_corners[edge];
+      const auto [place, is_new] = vertex_of_edge_.try_emplace({corners[low], axis}, static_cast<int>(edges_.size()));
+      if (is_new) edges_.push_back({corners[low], axis, values[low], values[high]});
+      vertices_.push_back(place->second);
     });
   }
-  return result;
+
+  const SparseGrid& grid_;
+  std::vector<int> patterns_;  // of the cells with some surface
+  std::vector<int> vertices_;  // on the crossed edges of each of them
+  std::vector<Edge> edges_;    // one for each vertex
+  std::map<std::pair<SparseGrid::Index, int>, int> vertex_of_edge_;
+};
+
+}  // namespace
+
+SurfaceGeometry march(const SparseGrid& grid, const ScalarFunction& field) { return Marcher(grid, field).run(); }
+
+SurfaceGeometry march(const SparseGrid& grid, const CellSet& cells, const ScalarFunction& field) {
+  return CellMarcher(grid, cells).run(field);
 }
 
 }  // namespace flowskin::tracking

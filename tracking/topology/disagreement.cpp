@@ -201,15 +201,15 @@ std::vector<Cell> hidden_cells(const GridCrossings& crossings) {
   return cells;
 }
 
-std::vector<Cell> unresolved_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions) {
-  const std::vector<int> unresolved = where_true(positions.size(), [&](int v) {
-    const Vec3 x = grid.coordinates(positions[v]);
+std::vector<Cell> unresolved_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& places) {
+  const std::vector<int> unresolved = where_true(places.size(), [&](int i) {
+    const Vec3 x = grid.coordinates(places[i]);
     const Vec3 floor = x.array().floor();
     return !(distance_in_cell(grid, cell_at(x), x - floor) < reach);
   });
   std::vector<Cell> cells;
-  for (int v : unresolved) {
-    const Vec3 x = grid.coordinates(positions[v]);
+  for (int i : unresolved) {
+    const Vec3 x = grid.coordinates(places[i]);
     add_cells(x, x, cells);
   }
   return cells;

@@ -16,7 +16,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kResolved = 0.2;                    // cells; how well the grid knows the surface where it resolves it
+constexpr double kResolved = 0.3;                    // cells; how well the grid knows the surface where it resolves it
 constexpr double kDisplaced = 0.35;                  // cells, along the edges of the grid: to be looked at
 constexpr double kFarApart = 0.47;                   // cells; the two surfaces are not to be so far from each other
 constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};  // cells; a thin neck is near its stumps
@@ -30,6 +30,19 @@ std::vector<Triangle> chosen(const std::vector<Triangle>& triangles, const std::
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t i = 0; i < std::ssize(numbers); ++i) result[i] = triangles[numbers[i]];
   return result;
+}
+
+// Vertices and centres of triangles; a vertex may come several times.
+std::vector<Vec3> places_on(const SurfaceMesh& mesh, const std::vector<Triangle>& triangles) {
+  const bool all = triangles.size() == mesh.triangles.size();
+  std::vector<Vec3> places;
+  if (all) places = mesh.positions;
+  for (const Triangle& triangle : triangles) {
+    places.push_back(triangle_center(mesh.positions, triangle));
+    if (all) continue;
+    for (int vertex : triangle) places.push_back(mesh.positions[vertex]);
+  }
+  return places;
 }
 
 // Triangles that are off the surface, without area, or that intersect; and such as are wrong side out, but for fresh
@@ -90,10 +103,9 @@ std::vector<CellSet::Cell> PlacesToMend::disagreements(const SurfaceMesh& mesh,
   const GridCrossings crossings = grid_crossings(fresh_.grid, mesh.positions, looked_at);
   std::vector<CellSet::Cell> cells, doubtful = displaced_cells(fresh_.field, fresh_.grid, kDisplaced, crossings);
   // Fresh surface agrees with the signs of the grid.
-  if (!focus_) {
-    cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, crossings, &doubtful);
-    for (const auto& cell : unresolved_cells(fresh_.grid, kResolved, mesh.positions)) doubtful.push_back(cell);
-  }
+  if (!focus_) cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, crossings, &doubtful);
+  for (const auto& cell : unresolved_cells(fresh_.grid, kResolved, places_on(mesh, looked_at)))
+    doubtful.push_back(cell);
   for (const auto& cell : strays_in(CellSet(std::move(doubtful)), mesh)) cells.push_back(cell);
   return cells;
 }
