@@ -231,21 +231,17 @@ class CellMarcher {
   };
 
   void add(const CellSet::Cell& cell) {
-    std::array<SparseGrid::Index, 8> corners{};
-    std::array<double, 8> values{};
+    const std::array<double, 8> values = grid_.corner_values(cell);
     int pattern = 0;
-    for (int c = 0; c < 8; ++c) {
-      corners[c] = {cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2 & 1)};
-      values[c] = grid_.value(corners[c]);
-      pattern |= values[c] > 0 ? 1 << c : 0;
-    }
+    for (int c = 0; c < 8; ++c) pattern |= values[c] > 0 ? 1 << c : 0;
     if (pattern == 0 || pattern == 255) return;
     patterns_.push_back(pattern);
     for_each_crossed_edge(pattern, [&](int edge) {
       const int axis = edge / 4;
       const auto [low, high] = cell_tables().edge_corners[edge];
-      const auto [place, is_new] = vertex_of_edge_.try_emplace({corners[low], axis}, static_cast<int>(edges_.size()));
-      if (is_new) edges_.push_back({corners[low], axis, values[low], values[high]});
+      const SparseGrid::Index node = {cell[0] + (low & 1), cell[1] + (low >> 1 & 1), cell[2] + (low >> 2)};
+      const auto [place, is_new] = vertex_of_edge_.try_emplace({node, axis}, static_cast<int>(edges_.size()));
+      if (is_new) edges_.push_back({node, axis, values[low], values[high]});
       vertices_.push_back(place->second);
     });
   }

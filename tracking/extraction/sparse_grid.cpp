@@ -124,6 +124,28 @@ double SparseGrid::value(const Index& node) const {
   return block < 0 ? outside_ : blocks_[block].values[node_in_block(inner[0], inner[1], inner[2])];
 }
 
+std::array<double, 8> SparseGrid::corner_values(const Index& cell) const {
+  std::array<double, 8> values{};
+  Index place{}, inner{};
+  bool in_one_block = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    place[axis] = block_coordinate(cell[axis]);
+    inner[axis] = cell[axis] - kSide * place[axis];
+    in_one_block = in_one_block && inner[axis] + 1 < kSide;
+  }
+  const int block = in_one_block ? find(place) : -1;
+  for (int c = 0; c < 8; ++c) {
+    const Index corner = {c & 1, c >> 1 & 1, c >> 2};
+    if (!in_one_block) {
+      values[c] = value({cell[0] + corner[0], cell[1] + corner[1], cell[2] + corner[2]});
+    } else {
+      const int node = node_in_block(inner[0] + corner[0], inner[1] + corner[1], inner[2] + corner[2]);
+      values[c] = block < 0 ? outside_ : blocks_[block].values[node];
+    }
+  }
+  return values;
+}
+
 SparseGrid SparseGrid::of_particles(const std::vector<Vec3>& positions, const FieldSettings& settings, double spacing,
                                     const std::vector<double>& shares) {
   const auto share = [&shares](std::size_t p) { return shares.empty() ? 1.0 : shares[p]; };

@@ -44,6 +44,9 @@ class SparseGrid {
   Vec3 coordinates(const Vec3& x) const;
   /// Value at a node, wherever it is.
   double value(const Index& node) const;
+  /// Values at the corners of the cell between a node and the next ones: bit 0 of a corner's number along x, 1 along y,
+  /// 2 along z.
+  std::array<double, 8> corner_values(const Index& cell) const;
 
   static int node_in_block(int i, int j, int k) { return (i * kSide + j) * kSide + k; }
 

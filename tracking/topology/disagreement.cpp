@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tracking/mesh/mesh_measures.h"
 #include "tracking/topology/grid_crossings.h"
 #include "tracking/topology/where_true.h"
 
@@ -131,12 +132,13 @@ std::vector<Probe> probe_nodes(const SparseGrid& grid, const std::vector<GridCro
 // Distance, to first order, of a place in a cell from where the interpolated values are zero; infinite where all nodes
 // are on one side. Both in cells.
 double distance_in_cell(const SparseGrid& grid, const Cell& cell, const Vec3& place) {
+  const std::array<double, 8> values = grid.corner_values(cell);
   double value = 0;
   Vec3 slope = Vec3::Zero();
   int inside = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const std::array<int, 3> bit = {corner & 1, (corner >> 1) & 1, corner >> 2};
-    const double at_node = grid.value({cell[0] + bit[0], cell[1] + bit[1], cell[2] + bit[2]});
+    const double at_node = values[corner];
     inside += at_node > 0;
     Vec3 weight;
     for (int axis = 0; axis < 3; ++axis) weight[axis] = bit[axis] ? place[axis] : 1 - place[axis];
@@ -201,17 +203,23 @@ std::vector<Cell> hidden_cells(const GridCrossings& crossings) {
   return cells;
 }
 
-std::vector<Cell> unresolved_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& places) {
-  const std::vector<int> unresolved = where_true(places.size(), [&](int i) {
-    const Vec3 x = grid.coordinates(places[i]);
+std::vector<Cell> unresolved_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
+                                   const std::vector<Triangle>& triangles) {
+  std::vector<char> used(positions.size());
+  for (const Triangle& triangle : triangles) {
+    for (int vertex : triangle) used[vertex] = 1;
+  }
+  const auto is_unresolved = [&](const Vec3& place) {
+    const Vec3 x = grid.coordinates(place);
     const Vec3 floor = x.array().floor();
     return !(distance_in_cell(grid, cell_at(x), x - floor) < reach);
-  });
+  };
   std::vector<Cell> cells;
-  for (int i : unresolved) {
-    const Vec3 x = grid.coordinates(places[i]);
-    add_cells(x, x, cells);
-  }
+  const auto add = [&](const Vec3& place) { add_cells(grid.coordinates(place), grid.coordinates(place), cells); };
+  for (int v : where_true(positions.size(), [&](int i) { return used[i] && is_unresolved(positions[i]); }))
+    add(positions[v]);
+  const auto center = [&](int t) { return triangle_center(positions, triangles[t]); };
+  for (int t : where_true(triangles.size(), [&](int i) { return is_unresolved(center(i)); })) add(center(t));
   return cells;
 }
 

@@ -7,11 +7,13 @@
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/improvement_limits.h"
 #include "tracking/fairing/relaxation.h"
+#include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/edges_by_length.h"
 #include "tracking/mesh/editable_mesh.h"
 #include "tracking/mesh/keep_vertices.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/point_tree.h"
+#include "tracking/topology/patch_crossings.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -19,6 +21,7 @@ namespace {
 using namespace improvement;
 
 constexpr double kSameVertex = 0.5;              // edge lengths between an old vertex and the new one in its place
+constexpr double kAsFresh = 0.4;                 // edge lengths between it and the fresh surface
 constexpr double kSameSide = 0.7;                // cosine between their normals
 constexpr double kUpright = 0.5;                 // cosine of the largest turn of a triangle
 constexpr double kLeastAngle = 20 * M_PI / 180;  // of a triangle then
@@ -177,8 +180,12 @@ void keep_old_vertices(const FieldGrid& fresh, const MeshToMend& whole, const Me
   const double edge_length = fresh.grid.spacing();
   const double tolerance = default_projection(fresh.field.settings()).tolerance;
   std::vector<int> dropped = mesh.dropped(whole, patch);
+  const SurfaceGeometry raw = geometry_of(whole, patch);
+  const ClosestPointTree fresh_surface(raw.positions, raw.triangles);
   std::erase_if(dropped, [&](int vertex) {
-    return !(surface_distance(fresh.field, whole.positions[vertex]).distance <= tolerance);
+    const Vec3& x = whole.positions[vertex];
+    return !fresh_surface.is_near(x, kAsFresh * edge_length) ||
+           !(surface_distance(fresh.field, x).distance <= tolerance);
   });
   const int first = mesh.old_count(), count = static_cast<int>(mesh.positions().size());
   if (dropped.empty() || first == count) return;

@@ -32,19 +32,6 @@ std::vector<Triangle> chosen(const std::vector<Triangle>& triangles, const std::
   return result;
 }
 
-// Vertices and centres of triangles; a vertex may come several times.
-std::vector<Vec3> places_on(const SurfaceMesh& mesh, const std::vector<Triangle>& triangles) {
-  const bool all = triangles.size() == mesh.triangles.size();
-  std::vector<Vec3> places;
-  if (all) places = mesh.positions;
-  for (const Triangle& triangle : triangles) {
-    places.push_back(triangle_center(mesh.positions, triangle));
-    if (all) continue;
-    for (int vertex : triangle) places.push_back(mesh.positions[vertex]);
-  }
-  return places;
-}
-
 // Triangles that are off the surface, without area, or that intersect; and such as are wrong side out, but for fresh
 // ones: a rim of fluid can be thinner than an edge, and the surface then folds sharply. `triangles` are those with the
 // numbers `looked_at`.
@@ -104,8 +91,7 @@ std::vector<CellSet::Cell> PlacesToMend::disagreements(const SurfaceMesh& mesh,
   std::vector<CellSet::Cell> cells, doubtful = displaced_cells(fresh_.field, fresh_.grid, kDisplaced, crossings);
   // Fresh surface agrees with the signs of the grid.
   if (!focus_) cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, crossings, &doubtful);
-  for (const auto& cell : unresolved_cells(fresh_.grid, kResolved, places_on(mesh, looked_at)))
-    doubtful.push_back(cell);
+  for (const auto& cell : unresolved_cells(fresh_.grid, kResolved, mesh.positions, looked_at)) doubtful.push_back(cell);
   for (const auto& cell : strays_in(CellSet(std::move(doubtful)), mesh)) cells.push_back(cell);
   return cells;
 }

@@ -206,14 +206,14 @@ std::vector<CellSet::Cell> strayed_cells(const FieldGrid& fresh, const MeshToMen
   const double reach = kNear * fresh.grid.spacing();
   const SurfaceGeometry before = geometry_of(mesh, raw), after = geometry_of(mesh, evened);
   std::vector<CellSet::Cell> cells;
-  const auto compare = [&](const SurfaceGeometry& surface, const SurfaceGeometry& other) {
+  const auto compare = [&](const std::vector<Vec3>& born, const SurfaceGeometry& other) {
     const ClosestPointTree tree(other.positions, other.triangles);
-    for (const Vec3& x : surface.positions) {
+    for (const Vec3& x : born) {
       if (!tree.is_near(x, reach)) add_cells(fresh.grid.coordinates(x), fresh.grid.coordinates(x), cells);
     }
   };
-  compare(before, after);
-  compare(after, before);
+  compare(raw.born, after);
+  compare(evened.born, before);
   return cells;
 }
 
