@@ -16,7 +16,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kResolved = 0.3;                    // cells; how well the grid knows the surface where it resolves it
+constexpr double kResolved = 0.2;                    // cells; how well the grid knows the surface where it resolves it
 constexpr double kDisplaced = 0.35;                  // cells, along the edges of the grid: to be looked at
 constexpr double kFarApart = 0.47;                   // cells; the two surfaces are not to be so far from each other
 constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};  // cells; a thin neck is near its stumps
