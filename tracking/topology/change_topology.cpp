@@ -19,12 +19,14 @@ namespace {
 
 constexpr int kRounds = 14;
 constexpr double kDust = 0.05;      // volume of a component that is not worth its triangles, in cells
+constexpr double kLarge = 0.5;      // volume of a component that must be in mesh and fresh extraction, in cells
 constexpr int kAttempts = 30;       // to fit a region in, until it has grown to where it does
 constexpr int kAllAroundEvery = 6;  // attempts the region grows as a whole
 
 // Of a closed surface, without the components that enclose less than `least` (m^3).
 SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, double least,
-                        double cell) {
+                        double edge_length) {
+  const double large = kLarge * std::pow(edge_length, 3);
   const MeshComponents parts = mesh_components(positions, triangles);
   // Each triangle has three sides, each edge two of them: V - E + F = V - F / 2.
   std::vector<int> doubled_euler(parts.count, 0);
@@ -38,7 +40,7 @@ SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Tr
     if (volume < least) continue;
     ++sum.components;
     sum.euler += doubled_euler[part] / 2;
-    if (volume < cell) continue;
+    if (volume < large) continue;
     ++sum.large_components;
     sum.large_euler += doubled_euler[part] / 2;
   }
@@ -256,22 +258,22 @@ TopologyReport change_topology(const MetaballField& field, const Particles& part
       SparseGrid::of_particles(field.positions(), field.settings(), settings.edge_length, field.shares());
   const FieldGrid fresh{field, grid};
   const SurfaceGeometry expected = march(grid);
-  const double least = least_volume(settings), cell = std::pow(settings.edge_length, 3);
+  const double least = least_volume(settings), edge_length = settings.edge_length;
   TopologyReport report;
-  report.expected = counts_of(expected.positions, expected.triangles, least, cell);
-  PlacesToMend to_mend(fresh, settings.depth);
+  report.expected = counts_of(expected.positions, expected.triangles, least, edge_length);
+  PlacesToMend to_mend(fresh, expected, settings.depth);
   for (int round = 0; round < kRounds; ++round) {
     std::vector<CellSet> regions = to_mend.find(mesh, projection);
     if (regions.empty()) {
-      report.counts = counts_of(mesh.positions, mesh.triangles, least, cell);
+      report.counts = counts_of(mesh.positions, mesh.triangles, least, edge_length);
       if (report.counts.agree_with(report.expected)) break;
-      regions = to_mend.find_hidden(mesh, expected);
-      if (regions.empty()) regions = to_mend.find_strays(mesh, expected);
+      regions = to_mend.find_hidden(mesh);
+      if (regions.empty()) regions = to_mend.find_strays(mesh);
       if (regions.empty()) break;
     }
     if (!settings.local) {
       report.stubborn = static_cast<int>(regions.size());
-      report.counts = counts_of(mesh.positions, mesh.triangles, least, cell);
+      report.counts = counts_of(mesh.positions, mesh.triangles, least, edge_length);
       report.why = "mesh and field disagree";
       break;
     }
@@ -283,7 +285,7 @@ TopologyReport change_topology(const MetaballField& field, const Particles& part
   }
   if (report.regions > 0 || settings.small_parts == SmallParts::drop) {
     sweep(fresh, particles, settings, mesh, projection, report);
-    report.counts = counts_of(mesh.positions, mesh.triangles, least, cell);
+    report.counts = counts_of(mesh.positions, mesh.triangles, least, edge_length);
   }
   if (settings.small_parts == SmallParts::balls) round_small_parts(settings, mesh, report);
   return report;

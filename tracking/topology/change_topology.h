@@ -26,9 +26,9 @@ struct TopologySettings {
 struct SurfaceCounts {
   int components = 0;
   int euler = 0;                              ///< Euler characteristic.
-  int large_components = 0, large_euler = 0;  ///< Of those that enclose a cell or more.
-  /// Of all parts, or of those that enclose a cell or more: a part can enclose a little more than a cell in one surface
-  /// and a little less in the other, and a part below a cell need not be in both.
+  int large_components = 0, large_euler = 0;  ///< Of those that enclose half a cell or more.
+  /// Of all parts, or of those that enclose half a cell or more: what is smaller need not be in both, and a part can
+  /// enclose a little more than that in one surface and a little less in the other.
   bool agree_with(const SurfaceCounts& other) const {
     return (components == other.components && euler == other.euler) ||
            (large_components == other.large_components && large_euler == other.large_euler);

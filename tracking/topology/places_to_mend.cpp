@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kResolved = 0.2;                    // cells; how well the grid knows the surface where it resolves it
 constexpr double kDisplaced = 0.35;                  // cells, along the edges of the grid: to be looked at
+constexpr double kFar = 0.4;                         // cells, from triangle centres: to be looked at
 constexpr double kFarApart = 0.47;                   // cells; the two surfaces are not to be so far from each other
 constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};  // cells; a thin neck is near its stumps
 constexpr double kHiddenShares[] = {0.75, 0.75, 0.4};  // of the trace that a hole leaves
@@ -90,7 +91,12 @@ std::vector<CellSet::Cell> PlacesToMend::disagreements(const SurfaceMesh& mesh,
   const GridCrossings crossings = grid_crossings(fresh_.grid, mesh.positions, looked_at);
   std::vector<CellSet::Cell> cells, doubtful = displaced_cells(fresh_.field, fresh_.grid, kDisplaced, crossings);
   // Fresh surface agrees with the signs of the grid.
-  if (!focus_) cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, crossings, &doubtful);
+  if (!focus_) {
+    cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, crossings, &doubtful);
+    for (const auto& cell :
+         far_cells(fresh_.grid, kFar * fresh_.grid.spacing(), mesh.positions, mesh.triangles, expected_))
+      doubtful.push_back(cell);
+  }
   for (const auto& cell : unresolved_cells(fresh_.grid, kResolved, mesh.positions, looked_at)) doubtful.push_back(cell);
   for (const auto& cell : strays_in(CellSet(std::move(doubtful)), mesh)) cells.push_back(cell);
   return cells;
@@ -119,10 +125,10 @@ CellSet PlacesToMend::widened_where_named_again(const CellSet& named) {
   return widened;
 }
 
-std::vector<CellSet> PlacesToMend::find_strays(const SurfaceMesh& mesh, const SurfaceGeometry& expected) {
+std::vector<CellSet> PlacesToMend::find_strays(const SurfaceMesh& mesh) {
   if (stray_round_ == std::ssize(kStrayReaches)) return {};
   const double spacing = fresh_.grid.spacing();
-  const Strays strays(fresh_.grid, kStrayReaches[stray_round_] * spacing, {mesh.positions, mesh.triangles}, expected);
+  const Strays strays(fresh_.grid, kStrayReaches[stray_round_] * spacing, {mesh.positions, mesh.triangles}, expected_);
   while (stray_round_ < std::ssize(kStrayReaches)) {
     const CellSet cells(strays.farther_than(kStrayReaches[stray_round_++] * spacing));
     if (!cells.empty()) return regions(cells.dilated(1));
@@ -130,10 +136,10 @@ std::vector<CellSet> PlacesToMend::find_strays(const SurfaceMesh& mesh, const Su
   return {};
 }
 
-std::vector<CellSet> PlacesToMend::find_hidden(const SurfaceMesh& mesh, const SurfaceGeometry& expected) {
+std::vector<CellSet> PlacesToMend::find_hidden(const SurfaceMesh& mesh) {
   if (hidden_round_ == std::ssize(kHiddenShares)) return {};
   const CellSet hidden = CellSet(hidden_cells(grid_crossings(fresh_.grid, mesh.positions, mesh.triangles))).dilated(1);
-  const LocalTopology topology(fresh_.grid, mesh.positions, mesh.triangles, expected);
+  const LocalTopology topology(fresh_.grid, mesh.positions, mesh.triangles, expected_);
   while (hidden_round_ < std::ssize(kHiddenShares)) {
     const CellSet cells(topology.differing(hidden, kHiddenShares[hidden_round_++]));
     if (!cells.empty()) return regions(cells.dilated(1));

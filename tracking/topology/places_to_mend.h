@@ -18,19 +18,21 @@ namespace flowskin::tracking {
 class PlacesToMend {
  public:
   /// Keeps references.
+  /// @param expected what marching cubes makes of the grid, by linear interpolation
   /// @param depth disagreements less deep than this (m) are let pass
-  PlacesToMend(const FieldGrid& fresh, double depth) : fresh_(fresh), depth_(depth) {}
+  PlacesToMend(const FieldGrid& fresh, const SurfaceGeometry& expected, double depth)
+      : fresh_(fresh), expected_(expected), depth_(depth) {}
 
   /// The regions with something to mend. What is still spoilt when it has been replaced is replaced in wider and wider
   /// regions, and in the end left as it is.
   std::vector<CellSet> find(const SurfaceMesh& mesh, const Projection& projection);
 
   /// Parts that only one of the two surfaces has; looked for more and more closely.
-  std::vector<CellSet> find_strays(const SurfaceMesh& mesh, const SurfaceGeometry& expected);
+  std::vector<CellSet> find_strays(const SurfaceMesh& mesh);
 
   /// Holes and bridges in films, threads and gaps thinner than a cell: the field may have them or not, marching cubes
   /// does not see it.
-  std::vector<CellSet> find_hidden(const SurfaceMesh& mesh, const SurfaceGeometry& expected);
+  std::vector<CellSet> find_hidden(const SurfaceMesh& mesh);
 
  private:
   std::vector<CellSet::Cell> disagreements(const SurfaceMesh& mesh, const std::vector<Triangle>& looked_at) const;
@@ -41,6 +43,7 @@ class PlacesToMend {
   static constexpr int kTimes = 4;  // that a place may be named in one call
 
   const FieldGrid& fresh_;
+  const SurfaceGeometry& expected_;
   double depth_;
   std::array<CellSet, kTimes> named_;  // cells that have been named once, twice ...
   std::optional<CellSet> focus_;       // none: everywhere

@@ -100,6 +100,16 @@ std::vector<CellSet::Cell> Strays::farther_than(double reach) const {
   return cells;
 }
 
+std::vector<CellSet::Cell> far_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
+                                     const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh) {
+  const ClosestPointTree tree(positions, triangles);
+  const auto center = [&](int t) { return triangle_center(fresh.positions, fresh.triangles[t]); };
+  std::vector<CellSet::Cell> cells;
+  for (int t : where_true(fresh.triangles.size(), [&](int i) { return !tree.is_near(center(i), reach); }))
+    add_cells(grid.coordinates(center(t)), grid.coordinates(center(t)), cells);
+  return cells;
+}
+
 std::vector<CellSet::Cell> stray_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
                                        const std::vector<Triangle>& triangles, const CellSet& where,
                                        const ScalarFunction& field) {

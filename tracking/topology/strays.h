@@ -27,7 +27,11 @@ class Strays {
   std::vector<Place> places_;
 };
 
-/// The same for some cells only: those of them with a vertex or triangle centre that is farther than `reach` (m) from
+/// The cells of a fresh surface with triangle centres that are farther than `reach` (m) from a mesh.
+std::vector<CellSet::Cell> far_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
+                                     const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh);
+
+/// Of some cells those with a vertex or triangle centre that is farther than `reach` (m) from
 /// the other surface. The fresh surface has its vertices on the field's roots.
 std::vector<CellSet::Cell> stray_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
                                        const std::vector<Triangle>& triangles, const CellSet& where,
