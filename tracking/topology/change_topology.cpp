@@ -19,14 +19,12 @@ namespace {
 
 constexpr int kRounds = 14;
 constexpr double kDust = 0.05;      // volume of a component that is not worth its triangles, in cells
-constexpr double kLarge = 0.5;      // volume of a component that must be in mesh and fresh extraction, in cells
 constexpr int kAttempts = 30;       // to fit a region in, until it has grown to where it does
 constexpr int kAllAroundEvery = 6;  // attempts the region grows as a whole
 
 // Of a closed surface, without the components that enclose less than `least` (m^3).
 SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, double least,
                         double edge_length) {
-  const double large = kLarge * std::pow(edge_length, 3);
   const MeshComponents parts = mesh_components(positions, triangles);
   // Each triangle has three sides, each edge two of them: V - E + F = V - F / 2.
   std::vector<int> doubled_euler(parts.count, 0);
@@ -34,17 +32,17 @@ SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Tr
     if (part >= 0) doubled_euler[part] += 2;
   }
   for (const Triangle& triangle : triangles) --doubled_euler[parts.of_vertex[triangle[0]]];
-  SurfaceCounts sum;
-  for (int part = 0; part < parts.count; ++part) {
-    const double volume = std::abs(parts.volumes[part]);
-    if (volume < least) continue;
-    ++sum.components;
-    sum.euler += doubled_euler[part] / 2;
-    if (volume < large) continue;
-    ++sum.large_components;
-    sum.large_euler += doubled_euler[part] / 2;
-  }
-  return sum;
+  const auto count = [&](double smallest) {
+    SurfaceCounts::Parts sum;
+    for (int part = 0; part < parts.count; ++part) {
+      if (std::abs(parts.volumes[part]) < smallest) continue;
+      ++sum.components;
+      sum.euler += doubled_euler[part] / 2;
+    }
+    return sum;
+  };
+  const double cell = std::pow(edge_length, 3);
+  return {count(std::max(least, cell / 2)), count(std::max(least, cell))};
 }
 
 // Components that enclose less are taken out in the end (m^3).

@@ -24,14 +24,17 @@ struct TopologySettings {
 
 /// What tells surfaces of different topology apart; parts that are dropped because they are small do not count.
 struct SurfaceCounts {
-  int components = 0;
-  int euler = 0;                              ///< Euler characteristic.
-  int large_components = 0, large_euler = 0;  ///< Of those that enclose half a cell or more.
-  /// Of all parts, or of those that enclose half a cell or more: what is smaller need not be in both, and a part can
-  /// enclose a little more than that in one surface and a little less in the other.
+  struct Parts {
+    int components = 0;
+    int euler = 0;  ///< Euler characteristic.
+    bool operator==(const Parts&) const = default;
+  };
+  Parts of_half_a_cell, of_a_cell;  ///< Those that enclose so much or more.
+
+  /// What is below a cell need not be in both; and a part can enclose a little more than a cell in one surface and a
+  /// little less in the other.
   bool agree_with(const SurfaceCounts& other) const {
-    return (components == other.components && euler == other.euler) ||
-           (large_components == other.large_components && large_euler == other.large_euler);
+    return of_half_a_cell == other.of_half_a_cell || of_a_cell == other.of_a_cell;
   }
 };
 
