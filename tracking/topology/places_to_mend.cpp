@@ -138,7 +138,10 @@ std::vector<CellSet> PlacesToMend::find_strays(const SurfaceMesh& mesh) {
 
 std::vector<CellSet> PlacesToMend::find_hidden(const SurfaceMesh& mesh) {
   if (hidden_round_ == std::ssize(kHiddenShares)) return {};
-  const CellSet hidden = CellSet(hidden_cells(grid_crossings(fresh_.grid, mesh.positions, mesh.triangles))).dilated(1);
+  const GridCrossings crossings = grid_crossings(fresh_.grid, mesh.positions, mesh.triangles);
+  std::vector<CellSet::Cell> hidden_or_shallow = hidden_cells(crossings);
+  for (const auto& cell : disagreeing_cells(fresh_.field, fresh_.grid, 0, crossings)) hidden_or_shallow.push_back(cell);
+  const CellSet hidden = CellSet(std::move(hidden_or_shallow)).dilated(1);
   const LocalTopology topology(fresh_.grid, mesh.positions, mesh.triangles, expected_);
   while (hidden_round_ < std::ssize(kHiddenShares)) {
     const CellSet cells(topology.differing(hidden, kHiddenShares[hidden_round_++]));
