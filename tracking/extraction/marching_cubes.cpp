@@ -261,4 +261,17 @@ SurfaceGeometry march(const SparseGrid& grid, const CellSet& cells, const Scalar
   return CellMarcher(grid, cells).run(field);
 }
 
+void put_on_root(const SparseGrid& grid, const ScalarFunction& field, Vec3& position) {
+  // It is on a grid edge: of its coordinates two are whole numbers.
+  const Vec3 x = grid.coordinates(position);
+  const Vec3 off = (x - Vec3(x.array().round())).cwiseAbs();
+  int axis = 0;
+  off.maxCoeff(&axis);
+  SparseGrid::Index node{};
+  for (int a = 0; a < 3; ++a) node[a] = static_cast<int>(a == axis ? std::floor(x[a]) : std::round(x[a]));
+  SparseGrid::Index next = node;
+  ++next[axis];
+  position = vertex_on_edge(grid, node, axis, grid.value(node), grid.value(next), field);
+}
+
 }  // namespace flowskin::tracking

@@ -30,4 +30,7 @@ SurfaceGeometry march(const SparseGrid& grid, const ScalarFunction& field = null
 /// The same surface within some cells only: open where it leaves them. Triangles in the order of the cells.
 SurfaceGeometry march(const SparseGrid& grid, const CellSet& cells, const ScalarFunction& field = nullptr);
 
+/// Puts a vertex of a surface that march() has made without the field on the field's root, as with it.
+void put_on_root(const SparseGrid& grid, const ScalarFunction& field, Vec3& position);
+
 }  // namespace flowskin::tracking

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kRounds = 14;
 constexpr double kDust = 0.05;      // volume of a component that is not worth its triangles, in cells
+constexpr double kSmall = 8;        // volume of a part that is compared by its true size, in cells
 constexpr int kAttempts = 30;       // to fit a region in, until it has grown to where it does
 constexpr int kAllAroundEvery = 6;  // attempts the region grows as a whole
 
@@ -43,6 +44,16 @@ SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Tr
   };
   const double cell = std::pow(edge_length, 3);
   return {count(std::max(least, cell / 2)), count(std::max(least, cell))};
+}
+
+// Interpolation along the edges of the grid makes parts hardly larger than a cell much too small to be compared.
+void put_small_parts_on_roots(const FieldGrid& fresh, double edge_length, SurfaceGeometry& surface) {
+  const MeshComponents parts = mesh_components(surface.positions, surface.triangles);
+  const double small = kSmall * std::pow(edge_length, 3);
+  const auto value = [&](const Vec3& x) { return fresh.field.value(x); };
+  for (std::size_t v = 0; v < surface.positions.size(); ++v) {
+    if (std::abs(parts.volumes[parts.of_vertex[v]]) < small) put_on_root(fresh.grid, value, surface.positions[v]);
+  }
 }
 
 // Components that enclose less are taken out in the end (m^3).
@@ -255,7 +266,8 @@ TopologyReport change_topology(const MetaballField& field, const Particles& part
   const SparseGrid grid =
       SparseGrid::of_particles(field.positions(), field.settings(), settings.edge_length, field.shares());
   const FieldGrid fresh{field, grid};
-  const SurfaceGeometry expected = march(grid);
+  SurfaceGeometry expected = march(grid);
+  put_small_parts_on_roots(fresh, settings.edge_length, expected);
   const double least = least_volume(settings), edge_length = settings.edge_length;
   TopologyReport report;
   report.expected = counts_of(expected.positions, expected.triangles, least, edge_length);
