@@ -4,9 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tracking/mesh/mesh_measures.h"
 #include "tracking/topology/grid_crossings.h"
-#include "tracking/topology/where_true.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -129,27 +127,6 @@ std::vector<Probe> probe_nodes(const SparseGrid& grid, const std::vector<GridCro
   return probes;
 }
 
-// Distance, to first order, of a place in a cell from where the interpolated values are zero; infinite where all nodes
-// are on one side. Both in cells.
-double distance_in_cell(const SparseGrid& grid, const Cell& cell, const Vec3& place) {
-  const std::array<double, 8> values = grid.corner_values(cell);
-  double value = 0;
-  Vec3 slope = Vec3::Zero();
-  int inside = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const std::array<int, 3> bit = {corner & 1, (corner >> 1) & 1, corner >> 2};
-    const double at_node = values[corner];
-    inside += at_node > 0;
-    Vec3 weight;
-    for (int axis = 0; axis < 3; ++axis) weight[axis] = bit[axis] ? place[axis] : 1 - place[axis];
-    value += at_node * weight.prod();
-    for (int axis = 0; axis < 3; ++axis)
-      slope[axis] += (bit[axis] ? at_node : -at_node) * weight[(axis + 1) % 3] * weight[(axis + 2) % 3];
-  }
-  if (inside == 0 || inside == 8) return std::numeric_limits<double>::infinity();
-  return std::abs(value) / slope.norm();
-}
-
 // |f| / |grad f| (m) at the probes where mesh and field do not agree which side they are on; -1 at the others.
 std::vector<double> depths_on_wrong_side(const MetaballField& field, const SparseGrid& grid,
                                          const std::vector<Probe>& probes) {
@@ -200,26 +177,6 @@ std::vector<Cell> hidden_cells(const GridCrossings& crossings) {
   for (int axis = 0; axis < 3; ++axis) probe_edges(crossings[axis], axis, probes);
   std::vector<Cell> cells;
   for (const Probe& probe : probes) add_cells_around(probe, cells);
-  return cells;
-}
-
-std::vector<Cell> unresolved_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
-                                   const std::vector<Triangle>& triangles) {
-  std::vector<char> used(positions.size());
-  for (const Triangle& triangle : triangles) {
-    for (int vertex : triangle) used[vertex] = 1;
-  }
-  const auto is_unresolved = [&](const Vec3& place) {
-    const Vec3 x = grid.coordinates(place);
-    const Vec3 floor = x.array().floor();
-    return !(distance_in_cell(grid, cell_at(x), x - floor) < reach);
-  };
-  std::vector<Cell> cells;
-  const auto add = [&](const Vec3& place) { add_cells(grid.coordinates(place), grid.coordinates(place), cells); };
-  for (int v : where_true(positions.size(), [&](int i) { return used[i] && is_unresolved(positions[i]); }))
-    add(positions[v]);
-  const auto center = [&](int t) { return triangle_center(positions, triangles[t]); };
-  for (int t : where_true(triangles.size(), [&](int i) { return is_unresolved(center(i)); })) add(center(t));
   return cells;
 }
 

@@ -33,10 +33,4 @@ std::vector<CellSet::Cell> displaced_cells(const MetaballField& field, const Spa
 /// @param crossings of all triangles of the mesh
 std::vector<CellSet::Cell> hidden_cells(const GridCrossings& crossings);
 
-/// The cells with vertices or centres of triangles that the grid knows nothing of: its values, interpolated in the cell
-/// of the place, put the surface farther from there than `reach` (in cells), or into another cell. Films, threads and
-/// gaps thinner than a cell are such places.
-std::vector<CellSet::Cell> unresolved_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
-                                            const std::vector<Triangle>& triangles);
-
 }  // namespace flowskin::tracking

@@ -16,11 +16,10 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kResolved = 0.2;                    // cells; how well the grid knows the surface where it resolves it
-constexpr double kDisplaced = 0.35;                  // cells, along the edges of the grid: to be looked at
-constexpr double kFar = 0.4;                         // cells, from triangle centres: to be looked at
-constexpr double kFarApart = 0.47;                   // cells; the two surfaces are not to be so far from each other
-constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};  // cells; a thin neck is near its stumps
+constexpr double kDisplaced = 0.35;  // cells, along the edges of the grid: to be looked at
+constexpr double kFar = 0.25;        // cells, from the surface that the grid's values give: to be looked at
+constexpr double kFarApart = 0.47;   // cells; the two surfaces are not to be so far from each other
+constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};    // cells; a thin neck is near its stumps
 constexpr double kHiddenShares[] = {0.75, 0.75, 0.4};  // of the trace that a hole leaves
 constexpr double kNarrow = 10 * M_PI / 180;
 constexpr double kManyNarrow = 0.0008;  // share of the triangles
@@ -90,14 +89,17 @@ std::vector<CellSet::Cell> PlacesToMend::disagreements(const SurfaceMesh& mesh,
                                                        const std::vector<Triangle>& looked_at) const {
   const GridCrossings crossings = grid_crossings(fresh_.grid, mesh.positions, looked_at);
   std::vector<CellSet::Cell> cells, doubtful = displaced_cells(fresh_.field, fresh_.grid, kDisplaced, crossings);
+  const auto doubt = [&](const std::vector<CellSet::Cell>& more) {
+    doubtful.insert(doubtful.end(), more.begin(), more.end());
+  };
+  const double far = kFar * fresh_.grid.spacing();
   // Fresh surface agrees with the signs of the grid.
   if (!focus_) {
     cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, crossings, &doubtful);
-    for (const auto& cell :
-         far_cells(fresh_.grid, kFar * fresh_.grid.spacing(), mesh.positions, mesh.triangles, expected_))
-      doubtful.push_back(cell);
+    doubt(far_cells(fresh_.grid, far, expected_.positions, expected_.triangles,
+                    ClosestPointTree(mesh.positions, mesh.triangles)));
   }
-  for (const auto& cell : unresolved_cells(fresh_.grid, kResolved, mesh.positions, looked_at)) doubtful.push_back(cell);
+  doubt(far_cells(fresh_.grid, far, mesh.positions, looked_at, expected_tree_));
   for (const auto& cell : strays_in(CellSet(std::move(doubtful)), mesh)) cells.push_back(cell);
   return cells;
 }

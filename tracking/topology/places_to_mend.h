@@ -8,6 +8,7 @@
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/cell_set.h"
 #include "tracking/extraction/marching_cubes.h"
+#include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/topology/replace_region.h"
 
@@ -21,7 +22,7 @@ class PlacesToMend {
   /// @param expected what marching cubes makes of the grid, by linear interpolation
   /// @param depth disagreements less deep than this (m) are let pass
   PlacesToMend(const FieldGrid& fresh, const SurfaceGeometry& expected, double depth)
-      : fresh_(fresh), expected_(expected), depth_(depth) {}
+      : fresh_(fresh), expected_(expected), expected_tree_(expected.positions, expected.triangles), depth_(depth) {}
 
   /// The regions with something to mend. What is still spoilt when it has been replaced is replaced in wider and wider
   /// regions, and in the end left as it is.
@@ -44,6 +45,7 @@ class PlacesToMend {
 
   const FieldGrid& fresh_;
   const SurfaceGeometry& expected_;
+  ClosestPointTree expected_tree_;
   double depth_;
   std::array<CellSet, kTimes> named_;  // cells that have been named once, twice ...
   std::optional<CellSet> focus_;       // none: everywhere

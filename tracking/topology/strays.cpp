@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/topology/where_true.h"
 
@@ -101,12 +100,17 @@ std::vector<CellSet::Cell> Strays::farther_than(double reach) const {
 }
 
 std::vector<CellSet::Cell> far_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
-                                     const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh) {
-  const ClosestPointTree tree(positions, triangles);
-  const auto center = [&](int t) { return triangle_center(fresh.positions, fresh.triangles[t]); };
+                                     const std::vector<Triangle>& triangles, const ClosestPointTree& other) {
+  std::vector<char> used(positions.size());
+  for (const Triangle& triangle : triangles) {
+    for (int vertex : triangle) used[vertex] = 1;
+  }
+  const auto center = [&](int t) { return triangle_center(positions, triangles[t]); };
   std::vector<CellSet::Cell> cells;
-  for (int t : where_true(fresh.triangles.size(), [&](int i) { return !tree.is_near(center(i), reach); }))
-    add_cells(grid.coordinates(center(t)), grid.coordinates(center(t)), cells);
+  const auto add = [&](const Vec3& x) { add_cells(grid.coordinates(x), grid.coordinates(x), cells); };
+  for (int v : where_true(positions.size(), [&](int i) { return used[i] && !other.is_near(positions[i], reach); }))
+    add(positions[v]);
+  for (int t : where_true(triangles.size(), [&](int i) { return !other.is_near(center(i), reach); })) add(center(t));
   return cells;
 }
 

@@ -5,6 +5,7 @@
 
 #include "tracking/extraction/cell_set.h"
 #include "tracking/extraction/marching_cubes.h"
+#include "tracking/mesh/closest_point.h"
 
 namespace flowskin::tracking {
 
@@ -27,9 +28,10 @@ class Strays {
   std::vector<Place> places_;
 };
 
-/// The cells of a fresh surface with triangle centres that are farther than `reach` (m) from a mesh.
+/// The cells with vertices or centres of triangles that are farther than `reach` (m) from another surface, whichever
+/// way that looks.
 std::vector<CellSet::Cell> far_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
-                                     const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh);
+                                     const std::vector<Triangle>& triangles, const ClosestPointTree& other);
 
 /// Of some cells those with a vertex or triangle centre that is farther than `reach` (m) from
 /// the other surface. The fresh surface has its vertices on the field's roots.
