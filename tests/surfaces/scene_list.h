@@ -8,8 +8,9 @@
 namespace flowskin::surfaces {
 
 inline const std::vector<std::string>& tested_scene_names() {
-  static const std::vector<std::string> names = {"drops_merge", "thread",  "pool_drop",        "torus",         "sheet",
-                                                 "enright",     "zalesak", "pouring_obstacle", "stairs_preview"};
+  static const std::vector<std::string> names = {"drops_merge",    "thread",  "pool_drop", "torus",
+                                                 "sheet",          "enright", "zalesak",   "pouring_obstacle",
+                                                 "stairs_preview", "stairs"};
   return names;
 }
 

@@ -52,11 +52,14 @@ struct FrameMeasures {
   std::size_t particles = 0, vertices = 0;
   std::vector<std::string> problems;  ///< Of mesh_problems.
   std::size_t self_intersections = 0;
-  Shape shape, fresh_shape;   ///< Of the tracked surface and of a fresh extraction.
-  bool borderline = false;    ///< They differ by components close to the limit of those left out, and by nothing else.
-  double volume = 0;          ///< m^3
-  double area_lost = 0;       ///< Share of the area of the frame before that is gone; 0 where the surface grows.
-  double volume_error = 0;    ///< Relative to that of a fresh extraction.
+  Shape shape, fresh_shape;  ///< Of the tracked surface and of a fresh extraction.
+  bool borderline = false;   ///< They differ by components close to the limit of those left out, and by nothing else.
+  double volume = 0;         ///< m^3
+  double area_lost = 0;      ///< Share of the area of the frame before that is gone; 0 where the surface grows.
+  double volume_error = 0;   ///< Relative to that of a fresh extraction.
+  /// Of tracked surface and fresh extraction, relative to an extraction with edges a third as long; known in frames
+  /// in which volume_error is beyond its limit.
+  double true_volume_error = 0, fresh_true_volume_error = 0;
   double hausdorff = 0;       ///< In target edge lengths.
   double field_distance = 0;  ///< Largest |f| / |grad f| at a vertex, in effective radii.
   double narrow_triangles = 0, odd_edges = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string_view>
 
 #include "surfaces/surface_checks.h"
 
@@ -112,6 +113,10 @@ std::vector<Violation> violations(const SceneMeasures& measures) {
     if (&line == &lines()[2] || &line == &lines()[3])
       sentence += fmt::format(": components {} for {}, Euler characteristic {} for {}", frame.shape.components,
                               frame.fresh_shape.components, frame.shape.euler, frame.fresh_shape.euler);
+    if (line.heading == std::string_view("volume %")) {
+      sentence += fmt::format(" (against cells a third as long: mesh {:+.2f} %, fresh extraction {:+.2f} %)",
+                              100 * frame.true_volume_error, 100 * frame.fresh_true_volume_error);
+    }
     if (frame.reextractions > 0) sentence += " (the guard: " + frame.reason + ")";
     found.push_back({line.heading, worst.beyond, worst.value, sentence});
   }
