@@ -27,17 +27,6 @@ int find_root(std::vector<int>& parent, int vertex) {
   return vertex;
 }
 
-double smallest_angle(const std::vector<Vec3>& positions, const Triangle& triangle) {
-  double smallest = M_PI;
-  for (int corner = 0; corner < 3; ++corner) {
-    const Vec3& x = positions[triangle[corner]];
-    const Vec3 a = positions[triangle[(corner + 1) % 3]] - x;
-    const Vec3 b = positions[triangle[(corner + 2) % 3]] - x;
-    smallest = std::min(smallest, std::atan2(a.cross(b).norm(), a.dot(b)));
-  }
-  return smallest;
-}
-
 template <class Condition>
 double share_of(const std::vector<double>& values, const Condition& condition) {
   if (values.empty()) return 1;
@@ -116,6 +105,17 @@ MeshQuality mesh_quality(const std::vector<Vec3>& positions, const std::vector<T
     quality.mean_smallest_angle += angle / static_cast<double>(triangles.size());
   }
   return quality;
+}
+
+double smallest_angle(const std::vector<Vec3>& positions, const Triangle& triangle) {
+  double smallest = M_PI;
+  for (int corner = 0; corner < 3; ++corner) {
+    const Vec3& x = positions[triangle[corner]];
+    const Vec3 a = positions[triangle[(corner + 1) % 3]] - x;
+    const Vec3 b = positions[triangle[(corner + 2) % 3]] - x;
+    smallest = std::min(smallest, std::atan2(a.cross(b).norm(), a.dot(b)));
+  }
+  return smallest;
 }
 
 std::vector<double> smallest_angles(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {

@@ -35,6 +35,9 @@ struct MeshQuality {
 /// All zero for an empty mesh.
 MeshQuality mesh_quality(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
+/// Of one triangle (rad).
+double smallest_angle(const std::vector<Vec3>& positions, const Triangle& triangle);
+
 /// Smallest angle of each triangle (rad).
 std::vector<double> smallest_angles(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 

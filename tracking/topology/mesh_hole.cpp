@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tracking/mesh/editable_mesh.h"
+#include "tracking/mesh/mesh_measures.h"
 
 namespace flowskin::tracking {
 namespace {
 
 constexpr int kSurroundings = 3;  // layers of cells around the hole that are looked at
-constexpr double kNarrow = 10 * M_PI / 180;
 constexpr int kPinchRounds = 30;
 
 Box box_of(const CellSet& cells) {
@@ -18,11 +17,7 @@ Box box_of(const CellSet& cells) {
 }
 
 bool is_narrow(const MeshToMend& mesh, int t) {
-  const auto corner = [&](int i) -> const Vec3& { return mesh.positions[mesh.triangles[t][i % 3]]; };
-  for (int i = 0; i < 3; ++i) {
-    if (angle_at(corner(i), corner(i + 1), corner(i + 2)) < kNarrow) return true;
-  }
-  return false;
+  return smallest_angle(mesh.positions, mesh.triangles[t]) < kNarrowAngle;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // A hole in a mesh, and what is around it.
 #pragma once
 
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "tracking/topology/replace_region.h"
 
 namespace flowskin::tracking {
+
+inline constexpr double kNarrowAngle = 10 * std::numbers::pi / 180;  ///< Of narrow triangles (rad).
 
 using Side = std::pair<int, int>;  ///< Of a triangle, from one corner to the next.
 

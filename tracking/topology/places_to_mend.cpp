@@ -10,6 +10,7 @@
 #include "tracking/mesh/self_intersections.h"
 #include "tracking/topology/disagreement.h"
 #include "tracking/topology/local_topology.h"
+#include "tracking/topology/mesh_hole.h"
 #include "tracking/topology/strays.h"
 #include "tracking/topology/where_true.h"
 
@@ -21,9 +22,8 @@ constexpr double kFar = 0.25;        // cells, from the surface that the grid's 
 constexpr double kFarApart = 0.47;   // cells; the two surfaces are not to be so far from each other
 constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};    // cells; a thin neck is near its stumps
 constexpr double kHiddenShares[] = {0.75, 0.75, 0.4};  // of the trace that a hole leaves
-constexpr double kNarrow = 10 * M_PI / 180;
-constexpr double kManyNarrow = 0.0008;  // share of the triangles
-constexpr int kFocus = 3;               // layers of cells around a replaced region that are looked at again
+constexpr double kManyNarrow = 0.0008;                 // share of the triangles
+constexpr int kFocus = 3;  // layers of cells around a replaced region that are looked at again
 
 std::vector<Triangle> chosen(const std::vector<Triangle>& triangles, const std::vector<int>& numbers) {
   std::vector<Triangle> result(numbers.size());
@@ -63,7 +63,7 @@ std::vector<int> triangles_in(const CellSet* cells, const std::vector<Box>& boxe
 // Narrow triangles where there are too many of them, as in the crease between bodies that have just met.
 std::vector<int> narrow_triangles(const SurfaceMesh& mesh) {
   const std::vector<double> angles = smallest_angles(mesh.positions, mesh.triangles);
-  std::vector<int> narrow = where_true(angles.size(), [&](int t) { return angles[t] < kNarrow; });
+  std::vector<int> narrow = where_true(angles.size(), [&](int t) { return angles[t] < kNarrowAngle; });
   if (static_cast<double>(narrow.size()) < kManyNarrow * static_cast<double>(angles.size())) narrow.clear();
   return narrow;
 }
