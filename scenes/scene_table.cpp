@@ -254,6 +254,10 @@ Table<Scene> solver_keys() {
              "and without background pressure; 1 is a good value, 0: none.")
           .only_for("simulation.density_method \"continuity\"",
                     [](const S& s) { return s.solver.density_method == sph::DensityMethod::continuity; }),
+      key<S>(
+          "simulation.wall_drag", at(solver, &Settings::wall_drag), number(at_least(0, 1)), "",
+          "Share of the skin friction of boundary layers thinner than a particle, for fast thin fluid that runs over "
+          "dry walls: 1 as boundary-layer theory says, 0 none."),
       key<S>("simulation.acoustic_cfl", at(solver, &Settings::acoustic_cfl), number(above(0, 2)), "",
              "Time step at most this times h / (c + v): h smoothing length, c speed of sound, v speed."),
       key<S>("simulation.viscous_cfl", at(solver, &Settings::viscous_cfl), number(above(0, 1)), "",

@@ -45,6 +45,7 @@ void check_settings(const SolverSettings& s) {
           "0 (free surfaces) or a pressure in Pa");
   require(s.xsph >= 0 && s.xsph <= 1, "xsph", s.xsph, "0 to 1");
   require(s.particle_shifting >= 0 && s.particle_shifting <= 2, "particle_shifting", s.particle_shifting, "0 to 2");
+  require(s.wall_drag >= 0 && s.wall_drag <= 1, "wall_drag", s.wall_drag, "0 to 1");
   require(s.density_diffusion >= 0 && s.density_diffusion <= 0.5, "density_diffusion", s.density_diffusion, "0 to 0.5");
   require(positive(s.acoustic_cfl), "acoustic_cfl", s.acoustic_cfl, "a number greater than 0");
   require(positive(s.viscous_cfl), "viscous_cfl", s.viscous_cfl, "a number greater than 0");

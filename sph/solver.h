@@ -77,6 +77,10 @@ struct SolverSettings {
   /// DensityMethod::continuity: the mean pressure is held at the background pressure, and suction has no limit. 0:
   /// none.
   double particle_shifting = 0;
+  /// Share of the skin friction of boundary layers that are thinner than a particle, 0 to 1: where fluid runs over a
+  /// wall that it has only just wetted, the wall resists as boundary-layer theory says and not as the coarse velocity
+  /// gradient does. 0: none.
+  double wall_drag = 0;
   DensityMethod density_method = DensityMethod::summation;
   double density_diffusion = 0.1;  ///< Continuity density only: coefficient delta of its diffusion; 0: none.
   double acoustic_cfl = 0.4;       ///< dt <= acoustic_cfl h / (c + |v|), h the smoothing length

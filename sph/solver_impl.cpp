@@ -99,6 +99,7 @@ SolverImpl::SolverImpl(SimulationSetup setup)
   for (const Fluid& fluid : fluids_) shear_dependent_ = shear_dependent_ || !fluid.rheology.is_newtonian();
   coefficients_ = PairCoefficients(settings_, wall_kernel_, !fluids_.empty());
   surface_tension_ = SurfaceTension(settings_);
+  wall_drag_ = WallDrag(settings_, coefficients_, wall_kernel_);
   mass_ = settings_.rest_density * std::pow(settings_.spacing, 3);
   smoothing_length_ = 0.5 * settings_.support_radius * settings_.spacing;
   origin_ = middle(points, boundary_.positions(), setup.emitters);
@@ -437,6 +438,10 @@ void SolverImpl::evaluate_forces() {
   if (shear_dependent_) update_viscosities(data);
   if (settings_.density_method == DensityMethod::summation) sum_densities(coefficients_, settings_, data);
   compute_forces(coefficients_, settings_, data);
+  if (wall_drag_.active()) {
+    wall_drag_.add({data.fluid, &clusters_, data.walls, &wall_lists_, data.wall_distances, data.viscosities, time_,
+                    statistics_.last_step.step, data.rates});
+  }
   if (surface_tension_.active()) {
     surface_stresses_.resize(particles_.size());
     add_surface_tension(surface_tension_,
@@ -547,7 +552,8 @@ std::size_t SolverImpl::memory_bytes() const {
   std::size_t bytes = const_cast<ParticleArrays&>(particles_).memory_bytes() + boundary_.memory_bytes() +
                       implicit_viscosity_.memory_bytes() + curve_.memory_bytes() + clusters_.memory_bytes() +
                       fluid_lists_.memory_bytes() + wall_lists_.memory_bytes() + tension_lists_.memory_bytes() +
-                      adhesion_lists_.memory_bytes() + surface_stresses_.capacity() * sizeof(SurfaceStress);
+                      adhesion_lists_.memory_bytes() + surface_stresses_.capacity() * sizeof(SurfaceStress) +
+                      wall_drag_.memory_bytes();
   return bytes;
 }
 

@@ -15,6 +15,7 @@
 #include "sph/periodic_box.h"
 #include "sph/solver.h"
 #include "sph/surface_tension.h"
+#include "sph/wall_drag.h"
 
 namespace flowskin::sph {
 
@@ -50,6 +51,7 @@ class SolverImpl {
     archive.each(emitters_);
     archive(places, boundary_.build_time(), particles_changed_, builds_since_sort_);
     archive(greatest_speed_, greatest_acceleration_, some_outside_, statistics_);
+    if (wall_drag_.active()) archive(wall_drag_.wet_since());
   }
 
   TimeStepReport choose_step(double limit) const;
@@ -95,6 +97,7 @@ class SolverImpl {
   WallKernel wall_kernel_;
   PairCoefficients coefficients_;
   SurfaceTension surface_tension_;
+  WallDrag wall_drag_;
   std::vector<SurfaceStress> surface_stresses_;  // empty without surface tension
   std::vector<JetEmitter> emitters_;
   std::vector<Sink> sinks_;

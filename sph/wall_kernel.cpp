@@ -138,6 +138,8 @@ WallKernel make_wall_kernel(const SolverSettings& settings) {
     wall.compression = missing.compression;
     wall.volume_factor = missing.compression * samples / layer(0.5 * spacing, radius);
 
+    wall.area_factor = samples / wall.volume_factor;
+
     const double softening = 0.01 * radius * radius / 4;
     const bool monaghan = settings.viscosity_form == ViscosityForm::monaghan;
     const double drag = plane_integral(0.5 * spacing, radius, [&](double r, double s2) {

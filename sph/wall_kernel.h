@@ -15,6 +15,7 @@ struct WallKernel {
   double sample_spacing = 0;  ///< Distance of boundary particles (m), 0.4 R_b.
   double volume_factor = 1;   ///< Factor of V_b.
   double compression = 0;     ///< What a plane adds to the kernel sum, over that of the lattice, half a spacing above.
+  double area_factor = 0;     ///< Area of a boundary particle in a plane over its volume, factor included (1/m).
   /// Factor of the viscous force of walls, by which a layer of fluid that slides half a spacing above a plane at speed
   /// u feels the shear stress rho nu u / (spacing / 2).
   double friction_factor = 1;

@@ -57,7 +57,7 @@ const char* const full_scene = R"({
   "particles": {"source": "simulation", "spacing": 0.07},
   "fluid": {"density": 900.5, "viscosity": 0.3, "surface_tension": 0.04},
   "simulation": {"gravity": [0.1, -1.62, 1e-3], "kernel": "cubic_spline", "support_radius": 2.2, "max_speed": 3,
-    "speed_of_sound": 31, "background_pressure": 7, "xsph": 0.2, "viscosity_form": "morris", "density_method": "continuity", "density_diffusion": 0.3, "particle_shifting": 0.6, "acoustic_cfl": 0.31, "viscous_cfl": 0.11,
+    "speed_of_sound": 31, "background_pressure": 7, "xsph": 0.2, "viscosity_form": "morris", "density_method": "continuity", "density_diffusion": 0.3, "particle_shifting": 0.6, "wall_drag": 0.7, "acoustic_cfl": 0.31, "viscous_cfl": 0.11,
     "force_cfl": 0.21, "max_time_step": 0.001, "capillary_cfl": 0.4, "viscosity_solver": "implicit", "viscosity_tolerance": 0.02, "viscosity_max_iterations": 77, "skin": 0.15, "domain": {"min": [-5, -5, -5], "max": [5, 6, 7]}, "periodic": [false, true, false]},
   "bodies": [
     {"shape": "block", "min": [0, 0, 0], "max": [1, 2, 3], "velocity": [1, 0, 0], "angular_velocity": [0, 1, 0]},

@@ -151,6 +151,14 @@ std::vector<Case> cases() {
          setup.settings.particle_shifting = 1;
          return setup;
        }},
+      {"WallDrag",
+       [] {
+         SimulationSetup setup = splash();
+         setup.settings.viscosity = 1e-6;
+         setup.settings.wall_drag = 1;
+         setup.bodies[0].velocity = {1, -1, 0.5};
+         return setup;
+       }},
       {"MorrisViscosityAndCubicSpline",
        [] {
          SimulationSetup setup = splash();
