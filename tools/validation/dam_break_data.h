@@ -1,4 +1,4 @@
-// Measured fronts of collapsing water columns, twice as high as wide.
+// Measured fronts of collapsing water columns.
 #pragma once
 
 #include <string>
@@ -13,10 +13,12 @@ struct DamBreakPoint {
 
 struct DamBreakSeries {
   std::string name;
+  double width;   ///< L (m)
+  double height;  ///< of the column, in widths
   std::vector<DamBreakPoint> points;
 };
 
-/// Koshizuka and Oka 1996; Martin and Moyce 1952 with columns 1.125 and 2.25 inches wide.
+/// Koshizuka and Oka 1996; Martin and Moyce 1952 with columns 1.125 and 2.25 inches wide, and 2.25 inches square.
 const std::vector<DamBreakSeries>& dam_break_experiments();
 
 }  // namespace flowskin::tools

@@ -8,6 +8,7 @@
 namespace flowskin::tools {
 
 std::string ValidationFigure::tolerance() const {
+  if (is_information()) return "none";
   if (std::isinf(low)) return "<= " + short_number(high);
   if (std::isinf(high)) return ">= " + short_number(low);
   return short_number(low) + " to " + short_number(high);
@@ -23,6 +24,13 @@ ValidationFigure at_least(std::string what, double measured, double limit) {
 
 ValidationFigure near_to(std::string what, double measured, double wanted, double tolerance) {
   return {std::move(what), measured, wanted - tolerance, wanted + tolerance};
+}
+
+ValidationFigure for_information(std::string what, double measured) {
+  ValidationFigure figure;
+  figure.what = std::move(what);
+  figure.measured = measured;
+  return figure;
 }
 
 Plot line_plot(std::string title, std::string x_label, std::string y_label, std::vector<Series> series) {

@@ -19,7 +19,9 @@ struct ValidationFigure {
   double high = std::numeric_limits<double>::infinity();
 
   bool holds() const { return measured >= low && measured <= high; }
-  /// "<= 0.02", "0.115 to 0.135", ">= 1.5"
+  /// Without limits: it tells something and is not judged.
+  bool is_information() const { return low == -high && high == std::numeric_limits<double>::infinity(); }
+  /// "<= 0.02", "0.115 to 0.135", ">= 1.5", "none"
   std::string tolerance() const;
 };
 
@@ -29,6 +31,8 @@ ValidationFigure at_most(std::string what, double measured, double limit);
 ValidationFigure at_least(std::string what, double measured, double limit);
 /// |measured - wanted| <= tolerance
 ValidationFigure near_to(std::string what, double measured, double wanted, double tolerance);
+/// No verdict: what helps to understand the other figures.
+ValidationFigure for_information(std::string what, double measured);
 
 /// A panel of lines.
 Plot line_plot(std::string title, std::string x_label, std::string y_label, std::vector<Series> series);

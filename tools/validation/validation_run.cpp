@@ -48,6 +48,11 @@ std::string report_text(const std::vector<ValidationCase>& cases, const std::vec
   return text;
 }
 
+std::string verdict(const ValidationFigure& figure) {
+  if (!figure.holds()) return "FAILED";
+  return figure.is_information() ? "information" : "holds";
+}
+
 }  // namespace
 
 bool ValidationOutcome::holds() const {
@@ -84,8 +89,8 @@ ResultTable outcome_table(const std::vector<ValidationOutcome>& outcomes) {
       table.add({outcome.name, without_commas(outcome.failure), std::string(), std::string(), std::string("FAILED"),
                  seconds});
     for (const ValidationFigure& figure : outcome.result.figures) {
-      table.add({outcome.name, without_commas(figure.what), figure.tolerance(), figure.measured,
-                 std::string(figure.holds() ? "holds" : "FAILED"), seconds});
+      table.add(
+          {outcome.name, without_commas(figure.what), figure.tolerance(), figure.measured, verdict(figure), seconds});
     }
   }
   return table;

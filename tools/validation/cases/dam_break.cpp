@@ -1,4 +1,12 @@
-// A column of water collapses: how fast its front runs along the floor, against two experiments.
+// A column of water collapses: how fast its front runs along the dry floor, against two papers' experiments.
+//
+// Front and clock. The column of the computation is free at once. Gates and diaphragms take time to open, and no clock
+// is certain to that time: the fronts of the experiments are 0.15 to 0.25 units of time late from the first point on.
+// So each series is given one delay, from its first two points, where the front has gone half a width; with it all
+// later points are predicted. The error with the clock as published is told without a verdict.
+//
+// Friction. The tongue is thin and the floor dry, so that boundary layers rule its tip [Whitham 1955];
+// simulation.wall_drag stands for them. Columns are computed at the size they had: friction makes small ones slower.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,17 +21,19 @@ namespace {
 
 using sph::Vec3;
 
-constexpr double width = 0.146, gravity = 9.81, water = 1e-6;  // m, m/s^2, m^2/s; the column is L wide and 2 L high
-constexpr int rows = 6;                                        // particles across the sheet, which is periodic
+constexpr double gravity = 9.81, water = 1e-6;  // m/s^2, m^2/s
+constexpr int rows = 6;                         // particles across the sheet, which is periodic
 
-sph::SimulationSetup column(int across) {
-  const double spacing = width / across, thickness = rows * spacing, tank = 16 * width;
+sph::SimulationSetup column(const DamBreakSeries& experiment, int across) {
+  const double width = experiment.width, height = experiment.height * width;
+  const double spacing = width / across, thickness = rows * spacing, tank = 20 * width;
   sph::SimulationSetup setup = flow_setup(spacing, water, {0, -gravity, 0});
+  setup.settings.wall_drag = 1;
   setup.settings.domain = {{0, 0, 0}, {0, 0, thickness}};
   setup.settings.periodic = {false, false, true};
-  setup.bodies.push_back(block_body({0, 0, 0}, {width, 2 * width, thickness}));
+  setup.bodies.push_back(block_body({0, 0, 0}, {width, height, thickness}));
   setup.boundaries.push_back(plane_wall({0, 0, 0}, {0, 0, thickness}, {tank, 0, 0}, 0));
-  setup.boundaries.push_back(plane_wall({0, 0, 0}, {0, 3 * width, 0}, {0, 0, thickness}, 0));
+  setup.boundaries.push_back(plane_wall({0, 0, 0}, {0, 1.5 * height, 0}, {0, 0, thickness}, 0));
   return setup;
 }
 
@@ -49,32 +59,35 @@ double front_place(const sph::FluidState& state, double spacing) {
   return sum / rows + 0.5 * spacing;
 }
 
-Front run_column(int across, double end) {
-  sph::Solver solver(column(across));
-  const double unit = std::sqrt(width / (2 * gravity));
+Front run_column(const DamBreakSeries& experiment, int across) {
+  sph::Solver solver(column(experiment, across));
+  const double unit = std::sqrt(experiment.width / (2 * gravity)), end = experiment.points.back().time;
   Front front{{0}, {1}};
   for (double t = 0.05; t < end + 0.05; t += 0.05) {
     solver.advance_to(t * unit);
     front.time.push_back(t);
-    front.place.push_back(front_place(solver.state(), width / across) / width);
+    front.place.push_back(front_place(solver.state(), experiment.width / across) / experiment.width);
   }
   return front;
 }
 
 // Of the front with its clock `delay` behind that of the experiment. Points before that are the column at rest.
-double largest_error(const Front& front, const std::vector<DamBreakPoint>& points, double delay = 0) {
+double largest_error(const Front& front, const std::vector<DamBreakPoint>& points, double delay) {
   double worst = 0;
   for (const auto& [t, z] : points) worst = std::max(worst, std::abs(front.at(std::max(0.0, t - delay)) - z) / z);
   return worst;
 }
 
-// The column of the computation is free at once; a gate or a diaphragm takes time to open, and when the experiments'
-// clocks start is not certain to that time. The delay that fits best, up to 0.4 of the unit of time.
-double best_delay(const Front& front, const std::vector<DamBreakPoint>& points) {
-  double best = 0;
-  for (int k = 1; k <= 40; ++k) {
-    const double delay = 0.01 * k;
-    if (largest_error(front, points, delay) < largest_error(front, points, best)) best = delay;
+// The delay by which the first two points after the start fit best.
+double early_delay(const Front& front, const std::vector<DamBreakPoint>& points) {
+  std::vector<DamBreakPoint> early;
+  for (const DamBreakPoint& point : points) {
+    if (point.time > 0 && early.size() < 2) early.push_back(point);
+  }
+  double best = -0.2;
+  for (int k = -40; k <= 100; ++k) {
+    const double delay = 0.005 * k;
+    if (largest_error(front, early, delay) < largest_error(front, early, best)) best = delay;
   }
   return best;
 }
@@ -85,29 +98,35 @@ Series series_of(const std::string& name, const std::vector<DamBreakPoint>& poin
   return series;
 }
 
+void compare(const DamBreakSeries& experiment, int across, Plot& plot, ValidationResult& result) {
+  const Front front = run_column(experiment, across);
+  const std::string particles = fmt::format("{} particles across", across);
+  const double delay = early_delay(front, experiment.points);
+  Series shifted{particles, {}, {}};
+  for (std::size_t k = 0; k < front.time.size(); ++k) {
+    shifted.x.push_back(front.time[k] + delay);
+    shifted.y.push_back(front.place[k]);
+    result.data.add({experiment.name + "; " + particles, front.time[k], front.place[k]});
+  }
+  plot.series.push_back(shifted);
+  const std::string what = experiment.name + "; " + particles;
+  result.figures.push_back(at_most(fmt::format("largest error of the front; {}; {:.3f} later", what, delay),
+                                   largest_error(front, experiment.points, delay), 0.05));
+  result.figures.push_back(for_information(fmt::format("the same; clock as published; {}", what),
+                                           largest_error(front, experiment.points, 0)));
+}
+
 ValidationResult run(double resolution) {
   ValidationResult result;
   result.data.columns = {"series", "time_sqrt_2g_per_l", "front_per_l"};
-  Plot plot = line_plot("Front of a collapsing column", "t √(2g/L)", "z / L", {});
-  for (const int count : {10, 20, 40}) {
-    const int across = static_cast<int>(std::lround(count * resolution));
-    const Front front = run_column(across, 9.25);
-    const std::string name = fmt::format("{} particles across", across);
-    plot.series.push_back({name, front.time, front.place});
-    for (std::size_t k = 0; k < front.time.size(); ++k) result.data.add({name, front.time[k], front.place[k]});
-    for (const DamBreakSeries& experiment : dam_break_experiments()) {
-      result.figures.push_back(at_most(fmt::format("largest error of the front; {}; {}", name, experiment.name),
-                                       largest_error(front, experiment.points), 0.05));
-      const double delay = best_delay(front, experiment.points);
-      result.figures.push_back(at_most(fmt::format("the same, {:.2f} later; {}; {}", delay, name, experiment.name),
-                                       largest_error(front, experiment.points, delay), 0.05));
-    }
-  }
   for (const DamBreakSeries& experiment : dam_break_experiments()) {
-    plot.series.push_back(series_of(experiment.name, experiment.points));
+    Plot plot = line_plot(experiment.name, "t √(2g/L)", "z / L", {});
+    for (const int count : {10, 20, 40})
+      compare(experiment, static_cast<int>(std::lround(count * resolution)), plot, result);
+    plot.series.push_back(series_of("measured", experiment.points));
     for (const auto& [t, z] : experiment.points) result.data.add({experiment.name, t, z});
+    result.plots.plots.push_back(plot);
   }
-  result.plots.plots = {plot};
   return result;
 }
 
