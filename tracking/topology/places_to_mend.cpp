@@ -96,10 +96,9 @@ std::vector<CellSet::Cell> PlacesToMend::disagreements(const SurfaceMesh& mesh,
   // Fresh surface agrees with the signs of the grid.
   if (!focus_) {
     cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, crossings, &doubtful);
-    doubt(far_cells(fresh_.grid, far, expected_.positions, expected_.triangles,
-                    ClosestPointTree(mesh.positions, mesh.triangles)));
+    doubt(far_centers(fresh_.grid, far, expected_, ClosestPointTree(mesh.positions, mesh.triangles)));
   }
-  doubt(far_cells(fresh_.grid, far, mesh.positions, looked_at, expected_tree_));
+  doubt(far_from_grid_surface(fresh_.grid, far, mesh.positions, looked_at, expected_tree_));
   for (const auto& cell : strays_in(CellSet(std::move(doubtful)), mesh)) cells.push_back(cell);
   return cells;
 }

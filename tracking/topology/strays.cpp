@@ -1,5 +1,6 @@
 #include "tracking/topology/strays.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,32 @@ namespace flowskin::tracking {
 namespace {
 
 constexpr double kSameSide = 0.5;
+constexpr double kSurelyNear = 0.1;  // cells, to first order
+
+void add_cell_of(const SparseGrid& grid, const Vec3& x, std::vector<CellSet::Cell>& cells) {
+  add_cells(grid.coordinates(x), grid.coordinates(x), cells);
+}
+
+// Distance, to first order, of a place from where the values interpolated in its cell are zero; infinite where all
+// nodes of the cell are on one side. Both in cells.
+double distance_in_cell(const SparseGrid& grid, const Vec3& coordinates) {
+  const Vec3 floor = coordinates.array().floor(), place = coordinates - floor;
+  const std::array<double, 8> values = grid.corner_values(cell_at(coordinates));
+  double value = 0;
+  Vec3 slope = Vec3::Zero();
+  int inside = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const std::array<int, 3> bit = {corner & 1, corner >> 1 & 1, corner >> 2};
+    inside += values[corner] > 0;
+    Vec3 weight;
+    for (int axis = 0; axis < 3; ++axis) weight[axis] = bit[axis] ? place[axis] : 1 - place[axis];
+    value += values[corner] * weight.prod();
+    for (int axis = 0; axis < 3; ++axis)
+      slope[axis] += (bit[axis] ? values[corner] : -values[corner]) * weight[(axis + 1) % 3] * weight[(axis + 2) % 3];
+  }
+  if (inside == 0 || inside == 8) return std::numeric_limits<double>::infinity();
+  return std::abs(value) / slope.norm();
+}
 
 // Vertices, then triangle centres of a surface, with their normals.
 class Samples {
@@ -99,18 +126,33 @@ std::vector<CellSet::Cell> Strays::farther_than(double reach) const {
   return cells;
 }
 
-std::vector<CellSet::Cell> far_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
-                                     const std::vector<Triangle>& triangles, const ClosestPointTree& other) {
+std::vector<CellSet::Cell> far_centers(const SparseGrid& grid, double reach, const SurfaceGeometry& surface,
+                                       const ClosestPointTree& other) {
+  const auto center = [&](int t) { return triangle_center(surface.positions, surface.triangles[t]); };
+  std::vector<CellSet::Cell> cells;
+  for (int t : where_true(surface.triangles.size(), [&](int i) { return !other.is_near(center(i), reach); }))
+    add_cell_of(grid, center(t), cells);
+  return cells;
+}
+
+std::vector<CellSet::Cell> far_from_grid_surface(const SparseGrid& grid, double reach,
+                                                 const std::vector<Vec3>& positions,
+                                                 const std::vector<Triangle>& triangles,
+                                                 const ClosestPointTree& grid_surface) {
   std::vector<char> used(positions.size());
   for (const Triangle& triangle : triangles) {
     for (int vertex : triangle) used[vertex] = 1;
   }
   const auto center = [&](int t) { return triangle_center(positions, triangles[t]); };
+  // Most places are told to be near by the values around them, which costs a fifth.
+  const auto is_far = [&](const Vec3& x) {
+    return !(distance_in_cell(grid, grid.coordinates(x)) < kSurelyNear) && !grid_surface.is_near(x, reach);
+  };
   std::vector<CellSet::Cell> cells;
-  const auto add = [&](const Vec3& x) { add_cells(grid.coordinates(x), grid.coordinates(x), cells); };
-  for (int v : where_true(positions.size(), [&](int i) { return used[i] && !other.is_near(positions[i], reach); }))
-    add(positions[v]);
-  for (int t : where_true(triangles.size(), [&](int i) { return !other.is_near(center(i), reach); })) add(center(t));
+  for (int v : where_true(positions.size(), [&](int i) { return used[i] && is_far(positions[i]); }))
+    add_cell_of(grid, positions[v], cells);
+  for (int t : where_true(triangles.size(), [&](int i) { return is_far(center(i)); }))
+    add_cell_of(grid, center(t), cells);
   return cells;
 }
 

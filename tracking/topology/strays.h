@@ -28,10 +28,17 @@ class Strays {
   std::vector<Place> places_;
 };
 
-/// The cells with vertices or centres of triangles that are farther than `reach` (m) from another surface, whichever
-/// way that looks.
-std::vector<CellSet::Cell> far_cells(const SparseGrid& grid, double reach, const std::vector<Vec3>& positions,
-                                     const std::vector<Triangle>& triangles, const ClosestPointTree& other);
+/// The cells with centres of triangles that are farther than `reach` (m) from another surface, whichever way that
+/// looks.
+std::vector<CellSet::Cell> far_centers(const SparseGrid& grid, double reach, const SurfaceGeometry& surface,
+                                       const ClosestPointTree& other);
+
+/// The cells with vertices or centres of triangles that are farther than `reach` (m) from the surface that march()
+/// makes of the grid's values.
+std::vector<CellSet::Cell> far_from_grid_surface(const SparseGrid& grid, double reach,
+                                                 const std::vector<Vec3>& positions,
+                                                 const std::vector<Triangle>& triangles,
+                                                 const ClosestPointTree& grid_surface);
 
 /// Of some cells those with a vertex or triangle centre that is farther than `reach` (m) from
 /// the other surface. The fresh surface has its vertices on the field's roots.
