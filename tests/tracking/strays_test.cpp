@@ -104,29 +104,36 @@ TEST(MarchingCubes, InSomeCellsIsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.triangles.size(), march(grid).triangles.size());
 }
 
-// A pyramid over a square, and the square with its centre: the tip is far from that, the square's corners are not.
-TEST(FarCells, AreThoseOfPlacesBeyondTheReach) {
+// A triangle across a ridge: its corners are near, its centre is not.
+TEST(FarCenters, AreSeenWhereTheCornersAreNear) {
   const SparseGrid grid = SparseGrid::of_values({1, 1, 1}, {-1}, -1, 1);
-  const auto at = [&](double x, double y, double z) {
-    return Vec3(grid.position({0, 0, 0}) + Vec3(x, y, z) * grid.spacing());
-  };
-  const std::vector<Triangle> triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
-  const SurfaceGeometry pyramid{{at(0, 0, 0.2), at(2, 0, 0.2), at(2, 2, 0.2), at(0, 2, 0.2), at(1, 1, 0.8)}, triangles};
-  SurfaceGeometry flat = pyramid;
-  flat.positions[4] = at(1, 1, 0.2);
-  const auto far = [&](const SurfaceGeometry& surface, const SurfaceGeometry& other, double reach) {
-    return far_cells(grid, reach, surface.positions, surface.triangles,
-                     ClosestPointTree(other.positions, other.triangles));
-  };
-  EXPECT_TRUE(far(pyramid, flat, 0.61).empty());
-  EXPECT_TRUE(has_cell_at(far(pyramid, flat, 0.5), grid, at(1, 1, 0.8)));
-  EXPECT_TRUE(far(pyramid, pyramid, 0.01).empty());
-  // A flat triangle across a ridge: its corners are near, its centre is not.
+  const auto at = [&](double x, double y, double z) { return Vec3(grid.position({0, 0, 0}) + Vec3(x, y, z)); };
   const SurfaceGeometry ridge{
       {at(0, 0, 0.1), at(2, 0, 0.1), at(0, 1, 1.1), at(2, 1, 1.1), at(0, 2, 0.1), at(2, 2, 0.1)},
       {{0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}}};
   const SurfaceGeometry cut{{at(0, 0, 0.1), at(2, 0, 0.1), at(1, 2, 0.1)}, {{0, 1, 2}}};
-  EXPECT_TRUE(has_cell_at(far(cut, ridge, 0.3), grid, at(1, 2.0 / 3, 0.1)));
+  const ClosestPointTree tree(ridge.positions, ridge.triangles);
+  // The centre is 2 / 3 from the ridge's foot, and its sides rise by 45 degrees.
+  EXPECT_TRUE(far_centers(grid, 0.48, cut, tree).empty());
+  const auto cells = far_centers(grid, 0.46, cut, tree);
+  EXPECT_EQ(cells.size(), 1U);
+  EXPECT_TRUE(has_cell_at(cells, grid, at(1, 2.0 / 3, 0.1)));
+}
+
+TEST(FarFromGridSurface, NoneOfThatSurfaceAndWhatWasMovedAway) {
+  const MetaballField field(ball_of_particles(4.2), {}, kField);
+  const SparseGrid grid = grid_of(field);
+  const SurfaceGeometry linear = march(grid);
+  const ClosestPointTree tree(linear.positions, linear.triangles);
+  EXPECT_TRUE(far_from_grid_surface(grid, 0.01, linear.positions, linear.triangles, tree).empty());
+  SurfaceGeometry mesh = linear;
+  for (const std::size_t v : {std::size_t{7}, mesh.positions.size() / 2}) {
+    mesh.positions[v] *= 1 + 0.5 / mesh.positions[v].norm();
+    const auto cells = far_from_grid_surface(grid, 0.3, mesh.positions, mesh.triangles, tree);
+    EXPECT_TRUE(has_cell_at(cells, grid, mesh.positions[v]));
+    for (const auto& cell : cells) EXPECT_LT((grid.position(cell) - mesh.positions[v]).norm(), 3);
+    mesh = linear;
+  }
 }
 
 TEST(StrayCells, NoneBetweenAFreshMeshAndItsField) {
