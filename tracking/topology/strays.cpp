@@ -17,24 +17,47 @@ void add_cell_of(const SparseGrid& grid, const Vec3& x, std::vector<CellSet::Cel
   add_cells(grid.coordinates(x), grid.coordinates(x), cells);
 }
 
-// Distance, to first order, of a place from where the values interpolated in its cell are zero; infinite where all
-// nodes of the cell are on one side. Both in cells.
+// Whether the corners of a cell in a set hang together along its edges.
+bool hang_together(int corners) {
+  int reached = corners & -corners;
+  for (int before = 0; before != reached;) {
+    before = reached;
+    for (int c = 0; c < 8; ++c) {
+      if (reached >> c & 1) reached |= corners & (1 << (c ^ 1) | 1 << (c ^ 2) | 1 << (c ^ 4));
+    }
+  }
+  return reached == corners;
+}
+
+// For each sign pattern whether it parts a cell in two: else interpolation and marching cubes may not agree.
+const std::array<bool, 256>& parted_in_two() {
+  static const std::array<bool, 256> table = [] {
+    std::array<bool, 256> parted{};
+    for (int pattern = 1; pattern < 255; ++pattern)
+      parted[pattern] = hang_together(pattern) && hang_together(255 ^ pattern);
+    return parted;
+  }();
+  return table;
+}
+
+// Distance, to first order, of a place from where the values interpolated in its cell are zero; infinite where they do
+// not part the nodes of the cell in two. Both in cells.
 double distance_in_cell(const SparseGrid& grid, const Vec3& coordinates) {
   const Vec3 floor = coordinates.array().floor(), place = coordinates - floor;
   const std::array<double, 8> values = grid.corner_values(cell_at(coordinates));
   double value = 0;
   Vec3 slope = Vec3::Zero();
-  int inside = 0;
+  int pattern = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const std::array<int, 3> bit = {corner & 1, corner >> 1 & 1, corner >> 2};
-    inside += values[corner] > 0;
+    pattern |= values[corner] > 0 ? 1 << corner : 0;
     Vec3 weight;
     for (int axis = 0; axis < 3; ++axis) weight[axis] = bit[axis] ? place[axis] : 1 - place[axis];
     value += values[corner] * weight.prod();
     for (int axis = 0; axis < 3; ++axis)
       slope[axis] += (bit[axis] ? values[corner] : -values[corner]) * weight[(axis + 1) % 3] * weight[(axis + 2) % 3];
   }
-  if (inside == 0 || inside == 8) return std::numeric_limits<double>::infinity();
+  if (!parted_in_two()[pattern]) return std::numeric_limits<double>::infinity();
   return std::abs(value) / slope.norm();
 }
 
@@ -144,14 +167,14 @@ std::vector<CellSet::Cell> far_from_grid_surface(const SparseGrid& grid, double 
     for (int vertex : triangle) used[vertex] = 1;
   }
   const auto center = [&](int t) { return triangle_center(positions, triangles[t]); };
-  // Most places are told to be near by the values around them, which costs a fifth.
-  const auto is_far = [&](const Vec3& x) {
-    return !(distance_in_cell(grid, grid.coordinates(x)) < kSurelyNear) && !grid_surface.is_near(x, reach);
-  };
+  // Most centres are told to be near by the values around them, which costs a fifth; but a vertex at the tip of a rim
+  // can be far although it seems to be near to first order.
+  const auto is_far = [&](const Vec3& x) { return !grid_surface.is_near(x, reach); };
+  const auto seems_near = [&](const Vec3& x) { return distance_in_cell(grid, grid.coordinates(x)) < kSurelyNear; };
   std::vector<CellSet::Cell> cells;
   for (int v : where_true(positions.size(), [&](int i) { return used[i] && is_far(positions[i]); }))
     add_cell_of(grid, positions[v], cells);
-  for (int t : where_true(triangles.size(), [&](int i) { return is_far(center(i)); }))
+  for (int t : where_true(triangles.size(), [&](int i) { return !seems_near(center(i)) && is_far(center(i)); }))
     add_cell_of(grid, center(t), cells);
   return cells;
 }
