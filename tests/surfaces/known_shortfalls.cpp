@@ -14,6 +14,8 @@ const std::vector<KnownShortfall>& shortfalls() {
       {"pool_drop", "ids lost %", 3, 0.09},
       {"torus", "ids lost %", 12, 0.09},
       {"stairs", "ids lost %", 8, 0.03},
+      // A vertex of the fresh surface on a rim, far from where interpolation puts it.
+      {"stairs", "Hausdorff", 2, 0.65},
       // Threads and films thinner than a cell.
       {"thread", "ids lost %", 3, 0.04},
       {"sheet", "components", 1, 1},
