@@ -47,20 +47,26 @@ void WallDrag::for_each_near(const WallDragData& data, std::size_t cluster, std:
   }
 }
 
-void WallDrag::note_wet(const WallDragData& data) {
-  weights_.assign(data.walls.size(), 0);
-  wet_since_.resize(data.walls.size(), -1);
+template <typename Function>
+void WallDrag::for_each_at_walls(const WallDragData& data, Function f) const {
   const float reach = std::sqrt(reach2_);
 #pragma omp parallel for schedule(static) num_threads(threads_for(data.fluid.size()))
   for (std::size_t c = 0; c < data.clusters->size(); ++c) {
     const PointCluster& cluster = (*data.clusters)[c];
     for (std::size_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
-      if (data.wall_distances[i] >= reach) continue;
-      for_each_near(data, c, i, [&](std::uint32_t b, std::uint32_t weight, const Eigen::Vector3f&) {
-        std::atomic_ref<std::uint32_t>(weights_[b]).fetch_add(weight, std::memory_order_relaxed);
-      });
+      if (data.wall_distances[i] < reach) f(c, i);
     }
   }
+}
+
+void WallDrag::note_wet(const WallDragData& data) {
+  weights_.assign(data.walls.size(), 0);
+  wet_since_.resize(data.walls.size(), -1);
+  for_each_at_walls(data, [&](std::size_t c, std::size_t i) {
+    for_each_near(data, c, i, [&](std::uint32_t b, std::uint32_t weight, const Eigen::Vector3f&) {
+      std::atomic_ref<std::uint32_t>(weights_[b]).fetch_add(weight, std::memory_order_relaxed);
+    });
+  });
   for (std::size_t b = 0; b < weights_.size(); ++b) {
     if (weights_[b] == 0)
       wet_since_[b] = -1;
@@ -111,16 +117,10 @@ Eigen::Vector3f WallDrag::acceleration(const WallDragData& data, std::size_t clu
 
 void WallDrag::add(const WallDragData& data) {
   note_wet(data);
-  const float reach = std::sqrt(reach2_);
-#pragma omp parallel for schedule(static) num_threads(threads_for(data.fluid.size()))
-  for (std::size_t c = 0; c < data.clusters->size(); ++c) {
-    const PointCluster& cluster = (*data.clusters)[c];
-    for (std::size_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
-      if (data.wall_distances[i] >= reach) continue;
-      const Eigen::Vector3f drag = acceleration(data, c, i);
-      data.rates[i].ax += drag.x(), data.rates[i].ay += drag.y(), data.rates[i].az += drag.z();
-    }
-  }
+  for_each_at_walls(data, [&](std::size_t c, std::size_t i) {
+    const Eigen::Vector3f drag = acceleration(data, c, i);
+    data.rates[i].ax += drag.x(), data.rates[i].ay += drag.y(), data.rates[i].az += drag.z();
+  });
 }
 
 }  // namespace flowskin::sph

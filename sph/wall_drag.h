@@ -46,6 +46,9 @@ class WallDrag {
   }
 
  private:
+  /// Calls f(cluster, i) for the particles in reach of a wall, on all threads.
+  template <typename Function>
+  void for_each_at_walls(const WallDragData& data, Function f) const;
   /// Calls f(b, weight, difference) for the boundary particles in reach of particle i.
   template <typename Function>
   void for_each_near(const WallDragData& data, std::size_t cluster, std::size_t i, Function f) const;

@@ -113,10 +113,7 @@ void add_strays(const SparseGrid& grid, double reach, const SurfaceGeometry& sur
     const Vec3 x = samples.place(i), place = grid.coordinates(x);
     return meets(where, place, place) && !tree.is_near(x, reach, samples.normal(i), kSameSide);
   });
-  for (int i : far) {
-    const Vec3 place = grid.coordinates(samples.place(i));
-    add_cells(place, place, cells);
-  }
+  for (int i : far) add_cell_of(grid, samples.place(i), cells);
 }
 
 }  // namespace
