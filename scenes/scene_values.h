@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scenes/json_text.h"
-#include "sph/triangle_mesh.h"
+#include "sph/geometry/triangle_mesh.h"
 
 namespace flowskin::scenes {
 

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <vector>
 
-#include "sph/pair_forces.h"
+#include "sph/forces/pair_forces.h"
+#include "sph/forces/particle_pack.h"
 #include "sph/parallel.h"
-#include "sph/particle_pack.h"
 #include "sph/solver.h"
 
 namespace flowskin::sph {

@@ -6,10 +6,10 @@
 #include <limits>
 #include <string>
 
-#include "sph/emitter_outlet.h"
-#include "sph/fluid_sinks.h"
-#include "sph/rheology.h"
-#include "sph/surface_tension.h"
+#include "sph/bodies/emitter_outlet.h"
+#include "sph/bodies/fluid_sinks.h"
+#include "sph/forces/surface_tension.h"
+#include "sph/viscosity/rheology.h"
 
 namespace flowskin::sph {
 

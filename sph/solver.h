@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "sph/boundary_motion.h"
+#include "sph/geometry/triangle_mesh.h"
 #include "sph/state_archive.h"
-#include "sph/triangle_mesh.h"
+#include "sph/walls/boundary_motion.h"
 
 namespace flowskin::sph {
 

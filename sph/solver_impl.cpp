@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-#include "sph/boundary_sampling.h"
-#include "sph/fluid_bodies.h"
-#include "sph/fluid_sinks.h"
+#include "sph/bodies/fluid_bodies.h"
+#include "sph/bodies/fluid_sinks.h"
 #include "sph/parallel.h"
-#include "sph/rheology.h"
 #include "sph/setup_checks.h"
+#include "sph/viscosity/rheology.h"
+#include "sph/walls/boundary_sampling.h"
 
 namespace flowskin::sph {
 

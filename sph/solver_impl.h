@@ -5,17 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "sph/boundary_particles.h"
-#include "sph/hilbert_order.h"
-#include "sph/implicit_viscosity.h"
-#include "sph/jet_emitter.h"
-#include "sph/neighbor_lists.h"
-#include "sph/pair_forces.h"
+#include "sph/bodies/jet_emitter.h"
+#include "sph/forces/pair_forces.h"
+#include "sph/forces/surface_tension.h"
+#include "sph/geometry/periodic_box.h"
+#include "sph/neighbors/hilbert_order.h"
+#include "sph/neighbors/neighbor_lists.h"
 #include "sph/particle_arrays.h"
-#include "sph/periodic_box.h"
 #include "sph/solver.h"
-#include "sph/surface_tension.h"
-#include "sph/wall_drag.h"
+#include "sph/viscosity/implicit_viscosity.h"
+#include "sph/walls/boundary_particles.h"
+#include "sph/walls/wall_drag.h"
 
 namespace flowskin::sph {
 

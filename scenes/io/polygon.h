@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "sph/triangle_mesh.h"
+#include "sph/geometry/triangle_mesh.h"
 
 namespace flowskin::scenes {
 

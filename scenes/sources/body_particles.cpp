@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "sph/fluid_bodies.h"
+#include "sph/bodies/fluid_bodies.h"
 
 namespace flowskin::scenes {
 namespace {

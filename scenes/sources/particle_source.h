@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "sph/geometry/triangle_mesh.h"
 #include "sph/state_archive.h"
-#include "sph/triangle_mesh.h"
 
 namespace flowskin::scenes {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sph/triangle_mesh.h"
+#include "sph/geometry/triangle_mesh.h"
 
 namespace flowskin::scenes {
 

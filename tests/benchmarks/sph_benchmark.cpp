@@ -6,8 +6,8 @@
 #include <chrono>
 #include <memory>
 
-#include "sph/hilbert_order.h"
-#include "sph/neighbor_lists.h"
+#include "sph/neighbors/hilbert_order.h"
+#include "sph/neighbors/neighbor_lists.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

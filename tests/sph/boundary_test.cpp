@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "sph/boundary_sampling.h"
-#include "sph/kernels.h"
-#include "sph/wall_guard.h"
-#include "sph/wall_kernel.h"
+#include "sph/forces/kernels.h"
+#include "sph/walls/boundary_sampling.h"
+#include "sph/walls/wall_guard.h"
+#include "sph/walls/wall_kernel.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

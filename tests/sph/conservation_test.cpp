@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "sph/wall_kernel.h"
+#include "sph/walls/wall_kernel.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

@@ -1,7 +1,7 @@
 // Surface tension and adhesion: drops.
 #include <gtest/gtest.h>
 
-#include "sph/surface_tension.h"
+#include "sph/forces/surface_tension.h"
 #include "tests/sph/test_meshes.h"
 #include "tools/validation/drop_measures.h"
 

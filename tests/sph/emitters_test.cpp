@@ -1,8 +1,8 @@
 // Emitters of any shape, and sinks, in the running solver.
 #include <gtest/gtest.h>
 
-#include "sph/jet_emitter.h"
-#include "sph/mesh_inside.h"
+#include "sph/bodies/jet_emitter.h"
+#include "sph/geometry/mesh_inside.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

@@ -1,10 +1,10 @@
 // Filling of bodies, and emitters.
-#include "sph/fluid_bodies.h"
+#include "sph/bodies/fluid_bodies.h"
 
 #include <gtest/gtest.h>
 
-#include "sph/jet_emitter.h"
-#include "sph/mesh_inside.h"
+#include "sph/bodies/jet_emitter.h"
+#include "sph/geometry/mesh_inside.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

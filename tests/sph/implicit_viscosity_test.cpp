@@ -1,12 +1,12 @@
 // The implicit viscosity: against the explicit force as an operator, against theory, and what it must keep.
-#include "sph/implicit_viscosity.h"
+#include "sph/viscosity/implicit_viscosity.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
 #include <Eigen/Dense>
 
-#include "sph/hilbert_order.h"
+#include "sph/neighbors/hilbert_order.h"
 #include "sph/setup_checks.h"
 #include "tests/sph/test_meshes.h"
 

@@ -1,4 +1,4 @@
-#include "sph/kernels.h"
+#include "sph/forces/kernels.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "sph/boundary_motion.h"
-#include "sph/moving_wall.h"
+#include "sph/walls/boundary_motion.h"
+#include "sph/walls/moving_wall.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

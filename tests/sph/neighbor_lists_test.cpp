@@ -1,12 +1,12 @@
 // Neighbour lists against brute force.
-#include "sph/neighbor_lists.h"
+#include "sph/neighbors/neighbor_lists.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "sph/hilbert_order.h"
+#include "sph/neighbors/hilbert_order.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

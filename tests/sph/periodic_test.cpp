@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <set>
 
-#include "sph/boundary_sampling.h"
-#include "sph/hilbert_order.h"
-#include "sph/neighbor_lists.h"
-#include "sph/wall_guard.h"
-#include "sph/wall_kernel.h"
+#include "sph/neighbors/hilbert_order.h"
+#include "sph/neighbors/neighbor_lists.h"
+#include "sph/walls/boundary_sampling.h"
+#include "sph/walls/wall_guard.h"
+#include "sph/walls/wall_kernel.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

@@ -1,9 +1,9 @@
 // Viscosities that depend on the shear rate, and several fluids in one simulation.
-#include "sph/rheology.h"
+#include "sph/viscosity/rheology.h"
 
 #include <gtest/gtest.h>
 
-#include "sph/wall_kernel.h"
+#include "sph/walls/wall_kernel.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

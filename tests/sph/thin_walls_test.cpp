@@ -1,5 +1,5 @@
 // Walls without thickness, and thin plates: fluid on one side does not feel fluid on the other.
-#include "sph/thin_walls.h"
+#include "sph/walls/thin_walls.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Skin friction of boundary layers thinner than a particle: a slab that slides on a plate against its law.
 #include <gtest/gtest.h>
 
-#include "sph/wall_drag.h"
+#include "sph/walls/wall_drag.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

@@ -4,7 +4,7 @@
 #include <map>
 #include <numeric>
 
-#include "sph/equation_of_state.h"
+#include "sph/forces/equation_of_state.h"
 
 namespace flowskin::tools {
 

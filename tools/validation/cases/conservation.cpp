@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sph/wall_kernel.h"
+#include "sph/walls/wall_kernel.h"
 #include "tools/validation/flow_setup.h"
 #include "tools/validation/validation_case.h"
 

@@ -1,0 +1,110 @@
+#include "sph/geometry/mesh_inside.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+namespace flowskin::sph {
+
+namespace {
+
+struct Crossing {
+  double x;
+  int sign;
+};
+
+// Is (y, z) left of the edge a -> b seen along x? The sum is done from the lower end to the upper one whatever the
+// direction, so two triangles that share an edge always agree and a row never slips between them.
+bool left_of(const Vec3& a, const Vec3& b, double y, double z) {
+  const bool swap = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
+  const Vec3 &p = swap ? b : a, &q = swap ? a : b;
+  const bool left = (q.y() - p.y()) * (z - p.z()) - (q.z() - p.z()) * (y - p.y()) >= 0;
+  return left != swap;
+}
+
+// Where the line along x through (y, z) crosses a triangle.
+std::optional<Crossing> cross_row(const Vec3& a, const Vec3& b, const Vec3& c, double y, double z) {
+  const bool ab = left_of(a, b, y, z), bc = left_of(b, c, y, z), ca = left_of(c, a, y, z);
+  if (ab != bc || bc != ca) return std::nullopt;
+  // Plane of the triangle solved for x.
+  const double ny = (b.z() - a.z()) * (c.x() - a.x()) - (b.x() - a.x()) * (c.z() - a.z());
+  const double nz = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+  const double nx = (b.y() - a.y()) * (c.z() - a.z()) - (b.z() - a.z()) * (c.y() - a.y());
+  if (nx == 0) return std::nullopt;
+  return Crossing{a.x() - (ny * (y - a.y()) + nz * (z - a.z())) / nx, ab ? 1 : -1};
+}
+
+}  // namespace
+
+bool is_inside(const TriangleMesh& mesh, const Vec3& p) {
+  int winding = 0;
+  for (const auto& t : mesh.triangles) {
+    const auto crossing = cross_row(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], p.y(), p.z());
+    if (crossing && crossing->x <= p.x()) winding += crossing->sign;
+  }
+  return winding != 0;
+}
+
+bool is_closed(const TriangleMesh& mesh) {
+  using Key = std::array<double, 6>;
+  std::map<Key, int> balance;
+  for (const auto& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 &a = mesh.positions[t[k]], &b = mesh.positions[t[(k + 1) % 3]];
+      if (a == b) continue;
+      const bool swap = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
+      const Vec3 &p = swap ? b : a, &q = swap ? a : b;
+      balance[{p.x(), p.y(), p.z(), q.x(), q.y(), q.z()}] += swap ? -1 : 1;
+    }
+  }
+  return !mesh.triangles.empty() &&
+         std::all_of(balance.begin(), balance.end(), [](const auto& e) { return e.second == 0; });
+}
+
+std::vector<Vec3> lattice_points_inside(const TriangleMesh& mesh, double spacing) {
+  Vec3 low = mesh.positions[mesh.triangles[0][0]], high = low;
+  for (const auto& t : mesh.triangles) {
+    for (const int v : t) {
+      low = low.cwiseMin(mesh.positions[v]);
+      high = high.cwiseMax(mesh.positions[v]);
+    }
+  }
+  const Eigen::Array3i count = ((high - low) / spacing).array().ceil().cast<int>().max(1);
+  std::vector<std::vector<Crossing>> rows(static_cast<std::size_t>(count.y()) * static_cast<std::size_t>(count.z()));
+  const auto row_y = [&](int j) { return low.y() + (j + 0.5) * spacing; };
+  const auto row_z = [&](int k) { return low.z() + (k + 0.5) * spacing; };
+  for (const auto& t : mesh.triangles) {
+    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    const Vec3 t_low = (a.cwiseMin(b).cwiseMin(c) - low) / spacing,
+               t_high = (a.cwiseMax(b).cwiseMax(c) - low) / spacing;
+    const int j_end = std::min(count.y() - 1, static_cast<int>(t_high.y())),
+              k_end = std::min(count.z() - 1, static_cast<int>(t_high.z()));
+    for (int j = std::max(0, static_cast<int>(t_low.y()) - 1); j <= j_end; ++j) {
+      for (int k = std::max(0, static_cast<int>(t_low.z()) - 1); k <= k_end; ++k) {
+        const double y = row_y(j), z = row_z(k);
+        if (const auto crossing = cross_row(a, b, c, y, z)) {
+          rows[static_cast<std::size_t>(j) * count.z() + k].push_back(*crossing);
+        }
+      }
+    }
+  }
+
+  std::vector<Vec3> inside;
+  for (int j = 0; j < count.y(); ++j) {
+    for (int k = 0; k < count.z(); ++k) {
+      std::vector<Crossing>& row = rows[static_cast<std::size_t>(j) * count.z() + k];
+      std::sort(row.begin(), row.end(), [](const Crossing& p, const Crossing& q) { return p.x < q.x; });
+      std::size_t next = 0;
+      int winding = 0;
+      for (int i = 0; i < count.x(); ++i) {
+        const double x = low.x() + (i + 0.5) * spacing;
+        while (next < row.size() && row[next].x <= x) winding += row[next++].sign;
+        if (winding != 0) inside.emplace_back(x, row_y(j), row_z(k));
+      }
+    }
+  }
+  return inside;
+}
+
+}  // namespace flowskin::sph

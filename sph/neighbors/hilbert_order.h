@@ -1,0 +1,34 @@
+// Order of points along a Hilbert curve: points that follow each other are close in space and in memory.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "sph/neighbors/point_view.h"
+
+namespace flowskin::sph {
+
+/// Index of a cell along the three-dimensional Hilbert curve with 2^levels cells along each edge [Skilling 2004].
+/// @param levels 1 to 21
+std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z, int levels);
+
+/// Sorts points along a Hilbert curve.
+class HilbertOrder {
+ public:
+  /// order()[k] is the index of the point that becomes the k-th. Points of one cell keep their order.
+  /// @param cell_size edge of the curve's cells, in the unit of the points; made larger where 2^21 cells do not reach
+  /// @param scratch is used on the way and grows to at least 20 bytes a point
+  void compute(const PointView& points, float cell_size, std::vector<char>& scratch);
+  void compute(const PointView& points, float cell_size) {
+    std::vector<char> scratch;
+    compute(points, cell_size, scratch);
+  }
+  const std::vector<std::uint32_t>& order() const { return order_; }
+  std::size_t memory_bytes() const;
+
+ private:
+  std::vector<std::uint32_t> order_;
+};
+
+}  // namespace flowskin::sph
