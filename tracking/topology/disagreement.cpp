@@ -40,8 +40,31 @@ void probe_edges(const std::vector<GridCrossing>& crossings, int axis, std::vect
   });
 }
 
+// The node at a grid coordinate of a line along an axis.
+SparseGrid::Index node_on_line(const std::array<int, 2>& line, int axis, int place) {
+  SparseGrid::Index node{};
+  node[axis] = place;
+  node[(axis + 1) % 3] = line[0];
+  node[(axis + 2) % 3] = line[1];
+  return node;
+}
+
+// May the field's zero on the grid edge of a crossing be farther from it than `apart` (cells)? A straight line between the
+// values at the edge's ends puts it at a place that is wrong by the field's curvature, taken from the nodes beyond.
+bool may_be_displaced(const SparseGrid& grid, const GridCrossing& crossing, int axis, double apart) {
+  const int low = static_cast<int>(std::floor(crossing.place));
+  const auto value = [&](int place) { return grid.value(node_on_line(crossing.line, axis, place)); };
+  const double f = value(low), g = value(low + 1);
+  if ((f > 0) == (g > 0)) return false;
+  const double share = f / (f - g);
+  const double distance = std::abs(low + share - crossing.place);
+  if (distance >= kSurelyNear * apart) return true;
+  const double bend = std::max(std::abs(value(low - 1) - 2 * f + g), std::abs(f - 2 * g + value(low + 2)));
+  return distance + bend * share * (1 - share) / (2 * std::abs(f - g)) >= apart;
+}
+
 // Of lines along one axis: places `apart` (cells) to both sides of a crossing that is alone on its grid edge, where the
-// values at the ends of the edge put it much elsewhere.
+// values of the grid do not show that the field's zero is nearer.
 void probe_beside(const SparseGrid& grid, const std::vector<GridCrossing>& crossings, int axis, double apart,
                   std::vector<Probe>& probes) {
   for_each_line(crossings, [&](const GridCrossing* begin, const GridCrossing* end) {
@@ -49,14 +72,7 @@ void probe_beside(const SparseGrid& grid, const std::vector<GridCrossing>& cross
       const double low = std::floor(crossing->place);
       if ((crossing > begin && crossing[-1].place >= low) || (crossing + 1 < end && crossing[1].place < low + 1))
         continue;
-      SparseGrid::Index node{};
-      node[axis] = static_cast<int>(low);
-      node[(axis + 1) % 3] = crossing->line[0];
-      node[(axis + 2) % 3] = crossing->line[1];
-      const double f = grid.value(node);
-      ++node[axis];
-      const double g = grid.value(node);
-      if ((f > 0) == (g > 0) || std::abs(low + f / (f - g) - crossing->place) < kSurelyNear * apart) continue;
+      if (!may_be_displaced(grid, *crossing, axis, apart)) continue;
       for (const int side : {-1, 1}) {
         const double place = crossing->place + side * apart;
         if (place <= low || place >= low + 1) continue;
