@@ -121,6 +121,43 @@ TEST(Disagreement, DisplacedSurfaceIsSeenWhereItIs) {
   for (const auto& cell : cells) EXPECT_GT(grid.position(cell).x(), -2 * kEdge);
 }
 
+// Particles in a film that is about to tear, so far apart that the field is hardly above or below zero between them.
+std::vector<Vec3> thin_film(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> shift(-0.4, 0.4);
+  std::vector<Vec3> points;
+  for (int i = -12; i <= 12; ++i) {
+    for (int j = -12; j <= 12; ++j) {
+      points.emplace_back(i + shift(random), j + shift(random), shift(random));
+    }
+  }
+  return points;
+}
+
+// Vertices of the mesh are where straight lines between the values of the nodes are zero. The field's roots show which
+// of them are wrong.
+TEST(Disagreement, DisplacementIsSeenWhereTheValuesOfTheGridHideIt) {
+  constexpr double kCell = 1, kApart = 0.35, kFar = 0.45;
+  int displaced = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const MetaballField field(thin_film(seed), {}, kField);
+    const SparseGrid grid = SparseGrid::of_particles(field.positions(), field.settings(), kCell, {});
+    const SurfaceGeometry mesh = march(grid);
+    const auto crossings = grid_crossings(grid, mesh.positions, mesh.triangles);
+    const CellSet seen(displaced_cells(field, grid, kApart, crossings));
+    const auto value = [&](const Vec3& x) { return field.value(x); };
+    for (const Vec3& x : mesh.positions) {
+      Vec3 root = x;
+      put_on_root(grid, value, root);
+      if ((root - x).norm() < kFar * kCell) continue;
+      ++displaced;
+      EXPECT_TRUE(meets(seen, grid.coordinates(x), grid.coordinates(x)))
+          << grid.coordinates(x).transpose() << " -> " << grid.coordinates(root).transpose();
+    }
+  }
+  EXPECT_GT(displaced, 100);
+}
+
 std::vector<Vec3> two_balls(double distance) {
   std::vector<Vec3> points = ball_of_particles(3.2, {-distance / 2, 0, 0});
   for (const Vec3& x : ball_of_particles(3.2, {distance / 2, 0, 0}, 5)) points.push_back(x);

@@ -1,6 +1,7 @@
 #include "tracking/topology/disagreement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -11,7 +12,7 @@ namespace {
 
 using Cell = CellSet::Cell;
 
-constexpr double kSurelyNear = 0.5;  // of the distance allowed: the field is no straight line between two nodes
+constexpr double kSurelyNear = 0.5;  // of the distance allowed: the field is no parabola between two nodes
 
 // A place to be looked at, in grid coordinates, with the winding number of the mesh there.
 struct Probe {
@@ -49,18 +50,27 @@ SparseGrid::Index node_on_line(const std::array<int, 2>& line, int axis, int pla
   return node;
 }
 
-// May the field's zero on the grid edge of a crossing be farther from it than `apart` (cells)? A straight line between the
-// values at the edge's ends puts it at a place that is wrong by the field's curvature, taken from the nodes beyond.
+// Where between 0 and 1 a parabola is zero that is f at 0 and g at 1, of the other sign, and has this second
+// difference.
+double root_of_parabola(double f, double g, double second_difference) {
+  const double a = second_difference / 2, b = g - f - a;
+  const double q = -(b + std::copysign(std::sqrt(std::max(0.0, b * b - 4 * a * f)), b)) / 2;
+  const double root = f / q;
+  return root >= 0 && root <= 1 ? root : q / a;
+}
+
+// May the field's zero on the grid edge of a crossing be farther from it than `apart` (cells)? It is surely near
+// where that is so with a straight line between the values at the edge's ends, and with the parabolas through the nodes
+// before and behind it.
 bool may_be_displaced(const SparseGrid& grid, const GridCrossing& crossing, int axis, double apart) {
   const int low = static_cast<int>(std::floor(crossing.place));
   const auto value = [&](int place) { return grid.value(node_on_line(crossing.line, axis, place)); };
   const double f = value(low), g = value(low + 1);
   if ((f > 0) == (g > 0)) return false;
-  const double share = f / (f - g);
-  const double distance = std::abs(low + share - crossing.place);
-  if (distance >= kSurelyNear * apart) return true;
-  const double bend = std::max(std::abs(value(low - 1) - 2 * f + g), std::abs(f - 2 * g + value(low + 2)));
-  return distance + bend * share * (1 - share) / (2 * std::abs(f - g)) >= apart;
+  return std::ranges::any_of(
+      std::array{0.0, value(low - 1) - 2 * f + g, f - 2 * g + value(low + 2)}, [&](double second) {
+        return std::abs(low + root_of_parabola(f, g, second) - crossing.place) >= kSurelyNear * apart;
+      });
 }
 
 // Of lines along one axis: places `apart` (cells) to both sides of a crossing that is alone on its grid edge, where the
