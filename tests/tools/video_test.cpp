@@ -11,6 +11,7 @@
 #include <string>
 
 #include "tools/errors.h"
+#include "tools/pipeline/picture_maker.h"
 #include "tools/render/video.h"
 
 namespace flowskin::tools {
@@ -118,6 +119,18 @@ TEST(VideoWithoutFfmpeg, IsFoundMissing) {
   EXPECT_FALSE(have_ffmpeg());
   EXPECT_THROW(encode_video("frame_%04d.png", 30, fs::path(::testing::TempDir()) / "film.mp4"), RunError);
   setenv("PATH", before.c_str(), 1);
+}
+
+TEST_F(Video, OfAFolderWithGapsIsNotMadeAndSaysHow) {
+  const RunDirectory directory(folder_);
+  fs::create_directories(directory.image_folder());
+  const Image image{16, 16, std::vector<Color>(256, Color{40, 90, 200})};
+  for (int frame : {80, 81, 82}) write_png(directory.surface_image(frame), image);
+  std::string said;
+  make_videos(directory, 30, [&](const std::string& line) { said += line; });
+  EXPECT_NE(said.find("3 pictures of 83 frames"), std::string::npos) << said;
+  EXPECT_NE(said.find("`flowskin render"), std::string::npos) << said;
+  EXPECT_FALSE(fs::exists(directory.surface_video()));
 }
 
 }  // namespace

@@ -70,7 +70,16 @@ void make_videos(const RunDirectory& directory, double frame_rate,
     return;
   }
   const auto encode = [&](const char* prefix, const std::filesystem::path& video) {
-    if (RunDirectory::frames_in(directory.image_folder(), prefix, ".png").empty()) return;
+    const std::vector<int> frames = RunDirectory::frames_in(directory.image_folder(), prefix, ".png");
+    if (frames.empty()) return;
+    // A run that went on after one without pictures has those of its own frames only.
+    if (std::size_t(frames.back()) + 1 != frames.size()) {
+      report(fmt::format(
+          "no {}: {} has {} pictures of {} frames; `flowskin render {}` draws them all and makes the videos",
+          video.filename().string(), directory.image_folder().string(), frames.size(), frames.back() + 1,
+          directory.root().string()));
+      return;
+    }
     encode_video(directory.image_folder() / (std::string(prefix) + "%04d.png"), frame_rate, video);
     report("wrote " + video.string());
   };
