@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sph/forces/pair_forces.h"
-#include "sph/forces/particle_pack.h"
 #include "sph/parallel.h"
+#include "sph/particle_pack.h"
 #include "sph/solver.h"
 
 namespace flowskin::sph {

@@ -6,7 +6,7 @@
 
 #include "sph/forces/equation_of_state.h"
 #include "sph/forces/kernels.h"
-#include "sph/geometry/minimum_image.h"
+#include "sph/forces/minimum_image.h"
 #include "sph/parallel.h"
 #include "sph/viscosity/viscous_pairs.h"
 

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "sph/forces/particle_pack.h"
 #include "sph/neighbors/neighbor_lists.h"
+#include "sph/particle_pack.h"
 #include "sph/solver.h"
 #include "sph/walls/wall_kernel.h"
 

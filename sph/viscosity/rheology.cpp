@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "sph/forces/kernels.h"
-#include "sph/geometry/minimum_image.h"
+#include "sph/forces/minimum_image.h"
 #include "sph/parallel.h"
 #include "sph/simd.h"
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "sph/forces/particle_pack.h"
 #include "sph/geometry/periodic_box.h"
 #include "sph/neighbors/point_clusters.h"
+#include "sph/particle_pack.h"
 #include "sph/solver.h"
 #include "sph/walls/boundary_sampling.h"
 #include "sph/walls/moving_wall.h"
