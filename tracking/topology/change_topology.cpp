@@ -114,7 +114,9 @@ class MeshUnderRepair {
   // Gives the new vertices their attributes, drops what is not used any more, and hands the mesh back.
   void finish(const Particles& particles, const MaterialSettings& settings, TopologyReport& report) {
     dress_new_vertices(particles, settings);
-    const std::vector<int> number = compact(report);
+    const std::vector<char> used = drop_triangles();
+    name_new_vertices(used, settings.same_vertex, report);
+    const std::vector<int> number = compact(used);
     take_over_projection(number);
   }
 
@@ -179,26 +181,47 @@ class MeshUnderRepair {
     mesh_.ids.resize(count, 0);
   }
 
-  // Returns the new number of each vertex, -1 for those that are gone.
-  std::vector<int> compact(TopologyReport& report) {
-    const std::vector<Vec3>& positions = mend_.positions;
-    std::vector<char> used(positions.size(), 0);
+  // Returns which vertices the triangles that are left use.
+  std::vector<char> drop_triangles() {
+    std::vector<char> used(mend_.positions.size(), 0);
     mesh_.triangles.clear();
     for (std::size_t t = 0; t < mend_.triangles.size(); ++t) {
       if (!mend_.alive[t]) continue;
       mesh_.triangles.push_back(mend_.triangles[t]);
       for (int vertex : mend_.triangles[t]) used[vertex] = 1;
     }
+    return used;
+  }
+
+  // A new vertex beside one that is gone, on the same side of the fluid, goes on under its id.
+  void name_new_vertices(const std::vector<char>& used, double same_vertex, TopologyReport& report) {
+    std::vector<int> gone, born;
+    for (int v = 0; v < std::ssize(used); ++v) {
+      const bool is_old = v < static_cast<int>(old_count_);
+      if (is_old != (used[v] != 0)) (is_old ? gone : born).push_back(v);
+    }
+    const auto places = [&](const std::vector<int>& vertices) {
+      std::vector<Vec3> result;
+      for (int vertex : vertices) result.push_back(mend_.positions[vertex]);
+      return result;
+    };
+    const std::vector<int> same = same_vertices(places(gone), places(born), same_vertex);
+    for (std::size_t i = 0; i < born.size(); ++i) {
+      const int old = same[i] < 0 ? -1 : gone[same[i]];
+      const bool goes_on = old >= 0 && mend_.normals[old].dot(mend_.normals[born[i]]) > 0;
+      mesh_.ids[born[i]] = goes_on ? mesh_.ids[old] : mesh_.next_id++;
+      report.born += goes_on ? 0 : 1;
+    }
+  }
+
+  // Returns the new number of each vertex, -1 for those that are gone.
+  std::vector<int> compact(const std::vector<char>& used) {
     std::vector<int> number(used.size(), -1);
     int count = 0;
     for (std::size_t v = 0; v < used.size(); ++v) {
-      if (!used[v]) continue;
-      number[v] = count++;
-      if (v < old_count_) continue;
-      mesh_.ids[v] = mesh_.next_id++;
-      ++report.born;
+      if (used[v]) number[v] = count++;
     }
-    mesh_.positions = positions;
+    mesh_.positions = mend_.positions;
     keep_numbered(number, mesh_.positions);
     keep_attributes(number, mesh_);
     for (Triangle& triangle : mesh_.triangles) {

@@ -43,7 +43,7 @@ struct TopologyReport {
   int regions = 0;         ///< Replaced.
   int stubborn = 0;        ///< Regions that could not be replaced.
   std::string why;         ///< Why the last of those could not be.
-  int born = 0;            ///< Vertices.
+  int born = 0;            ///< Vertices with new ids.
   int dropped = 0;         ///< Components that were taken out because they are small.
   int balls = 0;           ///< Components that were made balls.
   SurfaceCounts counts;    ///< Of the mesh, in the end.
@@ -54,8 +54,9 @@ struct TopologyReport {
 /// Replaces the regions of a mesh where it and the sign of the field disagree (Wojtan et al. 2009; for SPH Yu et al.
 /// 2012), where triangles intersect, have no area or look inwards, and where vertices could not be put onto the
 /// surface. Vertices outside keep position, id and all attributes, and their order. New ones take their material as
-/// MaterialCarrier says, and new ids. In the end the mesh has as many parts and holes as a fresh extraction; where
-/// features are smaller than a cell they may differ, and `counts` and `expected` tell.
+/// MaterialCarrier says; one that is beside an old one that is gone (same_vertices) its id, all others new ids. In the
+/// end the mesh has as many parts and holes as a fresh extraction; where features are smaller than a cell they may
+/// differ, and `counts` and `expected` tell.
 /// @param projection of the mesh's vertices; brought up to date
 TopologyReport change_topology(const MetaballField& field, const Particles& particles, const TopologySettings& settings,
                                SurfaceMesh& mesh, Projection& projection);

@@ -194,6 +194,15 @@ Vec3 MaterialCarrier::place(const Vec3& x, const Source& source, const std::vect
   return far.triangle < 0 ? x : x + interpolated(far, on_mesh) - interpolated(far, positions_);
 }
 
+std::vector<int> same_vertices(const std::vector<Vec3>& old_places, const std::vector<Vec3>& new_places, double reach) {
+  std::vector<int> old_of_new = nearest_points(old_places, new_places, reach);
+  const std::vector<int> new_of_old = nearest_points(new_places, old_places, reach);
+  for (int v = 0; v < std::ssize(old_of_new); ++v) {
+    if (old_of_new[v] >= 0 && new_of_old[old_of_new[v]] != v) old_of_new[v] = -1;
+  }
+  return old_of_new;
+}
+
 SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& geometry,
                            const std::vector<Vec3>& normals, const MetaballField& field, const Particles& particles,
                            const MaterialSettings& settings) {
@@ -207,12 +216,8 @@ SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& g
   MaterialCarrier(old_mesh.positions, old_mesh.triangles, field, particles, settings)
       .append_material(old_mesh, mesh.positions, normals, mesh);
 
-  const std::vector<int> old_of_new = nearest_points(old_mesh.positions, mesh.positions, settings.same_vertex);
-  const std::vector<int> new_of_old = nearest_points(mesh.positions, old_mesh.positions, settings.same_vertex);
-  for (int v = 0; v < count; ++v) {
-    const int old = old_of_new[v];
-    mesh.ids[v] = old >= 0 && new_of_old[old] == v ? old_mesh.ids[old] : mesh.next_id++;
-  }
+  const std::vector<int> same = same_vertices(old_mesh.positions, mesh.positions, settings.same_vertex);
+  for (int v = 0; v < count; ++v) mesh.ids[v] = same[v] >= 0 ? old_mesh.ids[same[v]] : mesh.next_id++;
   return mesh;
 }
 

@@ -80,8 +80,12 @@ class MaterialCarrier {
 /// The places of layer k of the particles; none where they are unknown.
 const std::vector<Vec3>& particle_layer(const Particles& particles, std::size_t k);
 
-/// A mesh of fresh geometry with its attributes: rest positions and layers as MaterialCarrier says. A vertex keeps the
-/// id of an old one where each is the other's nearest; all others get new ids. Velocities are zero.
+/// For each new vertex the old one that it goes on as, under its id: where each is the other's nearest and they are
+/// nearer than `reach` (m); -1: none.
+std::vector<int> same_vertices(const std::vector<Vec3>& old_places, const std::vector<Vec3>& new_places, double reach);
+
+/// A mesh of fresh geometry with its attributes: rest positions and layers as MaterialCarrier says, ids as
+/// same_vertices says; all others get new ids. Velocities are zero.
 /// @param old_mesh at the time of the field; may be empty
 /// @param normals outward normals of the geometry's vertices
 SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& geometry,
