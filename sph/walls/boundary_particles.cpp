@@ -52,7 +52,7 @@ double list_reach(const SolverSettings& settings) {
 
 BoundaryParticles::BoundaryParticles(const std::vector<Boundary>& boundaries, const SolverSettings& settings,
                                      const WallKernel& wall, const PeriodicBox& periodic)
-    : sample_spacing_(wall.sample_spacing), support_(wall.support), periodic_(periodic) {
+    : sample_spacing_(wall.sample_spacing), support_(wall.support), gap_width_(settings.spacing), periodic_(periodic) {
   const auto append_volumes = [&](std::size_t first) {
     const std::vector<Vec3> group(positions_.begin() + static_cast<std::ptrdiff_t>(first), positions_.end());
     for (const double volume : boundary_volumes(group, settings.kernel, support_, periodic)) {
@@ -160,7 +160,7 @@ void BoundaryParticles::mark_build(std::size_t fluid_clusters) {
   build_time_ = time_;
   triangles_.resize(fluid_clusters);
   for (auto& triangles : triangles_) triangles.clear();
-  near_gap_.assign(fluid_clusters, 0);
+  near_gap_.assign(fluid_clusters, NearGap::none);
   for (MovingWall& wall : movers_) wall.mark_build(fluid_clusters);
   if (!movers_.empty()) clusters_.assign(packs_, static_cast<float>(6 * sample_spacing_));
 }
@@ -168,13 +168,31 @@ void BoundaryParticles::mark_build(std::size_t fluid_clusters) {
 void BoundaryParticles::collect_triangles(std::size_t cluster, const Vec3& low, const Vec3& high, double margin) {
   bool near_gap = guard_.collect(low, high, margin, triangles_[cluster]);
   for (MovingWall& wall : movers_) near_gap = wall.collect_triangles(cluster, low, high, margin) || near_gap;
-  near_gap_[cluster] = near_gap;
+  const bool near_others = !movers_.empty() && collect_between(cluster, low, high, margin);
+  near_gap_[cluster] = near_others ? NearGap::between : near_gap ? NearGap::within : NearGap::none;
+}
+
+bool BoundaryParticles::collect_between(std::size_t cluster, const Vec3& low, const Vec3& high, double margin) {
+  const Vec3 reach = Vec3::Constant(margin + gap_width_);
+  std::vector<std::vector<std::uint32_t>> found(movers_.size());
+  std::size_t near = 0;
+  for (std::size_t w = 0; w < movers_.size(); ++w) {
+    movers_[w].find_triangles(low - reach, high + reach, found[w]);
+    near += !found[w].empty();
+  }
+  if (near == 0) return false;
+  std::vector<std::uint32_t> resting;
+  guard_.query_touching(low - reach, high + reach, resting);
+  if (near + !resting.empty() < 2) return false;
+  triangles_[cluster] = resting;
+  for (std::size_t w = 0; w < movers_.size(); ++w) movers_[w].mark_gap(cluster, found[w]);
+  return true;
 }
 
 Hold BoundaryParticles::hold_near(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const {
   if (!movers_.empty()) return hold_between(from, cluster, target, velocity);
   if (triangles_[cluster].empty()) return {};
-  const bool near_gap = near_gap_[cluster] != 0;
+  const bool near_gap = near_gap_[cluster] != NearGap::none;
   const WallGuard::Crossing crossing = guard_.check(from, target, triangles_[cluster], near_gap);
   if (!crossing.crossed) return {.kept_out = near_gap && keep_out(from, cluster, target, velocity)};
   velocity -= std::min(0.0, velocity.dot(crossing.normal)) * crossing.normal;
@@ -193,7 +211,8 @@ bool BoundaryParticles::keep_out(const Vec3& from, std::size_t cluster, Vec3& ta
 // there it may slide along.
 Hold BoundaryParticles::hold_between(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const {
   constexpr int rounds = 4;
-  const bool near_gap = near_gap_[cluster] != 0;
+  const bool near_gap = near_gap_[cluster] != NearGap::none;
+  const bool near_between = near_gap_[cluster] == NearGap::between;
   Hold result;
   for (int round = 0; round < rounds; ++round) {
     Hold now;
@@ -207,6 +226,7 @@ Hold BoundaryParticles::hold_between(const Vec3& from, std::size_t cluster, Vec3
       now.kept_out = keep_out(from, cluster, target, velocity);
     }
     for (const MovingWall& wall : movers_) now.add(wall.hold(from, cluster, target, velocity));
+    if (near_between) now.kept_out = keep_out_between(from, cluster, target, velocity) || now.kept_out;
     if (!now.any()) return result;
     result.add(now);
   }
@@ -217,6 +237,31 @@ Hold BoundaryParticles::hold_between(const Vec3& from, std::size_t cluster, Vec3
     result.squeezed_through = wall.hold(from, cluster, end, unused).held || result.squeezed_through;
   }
   return result;
+}
+
+// Where the walls leave no way around, the gap closes around the particle: it is free to leave.
+bool BoundaryParticles::keep_out_between(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const {
+  static const Pose rest;
+  std::vector<MetWall> walls;
+  walls.push_back({&guard_, &triangles_[cluster], &rest, &rest});
+  for (const MovingWall& wall : movers_) walls.push_back(wall.met(from, cluster));
+  const GapsBetween gaps(walls, gap_width_);
+  const GapsBetween::Gap gap = gaps.enter(from, target);
+  if (!gap.found) return false;
+  for (const GapsBetween::Way& way : gaps.ways_around(gap, from, target)) {
+    if (gaps.enter(from, way.to).found || stops(from, cluster, way.to)) continue;
+    target = way.to;
+    const Vec3 relative = velocity - walls[way.wall].velocity_at(target);
+    velocity -= std::min(0.0, relative.dot(way.normal)) * way.normal;
+    return true;
+  }
+  return false;
+}
+
+bool BoundaryParticles::stops(const Vec3& from, std::size_t cluster, const Vec3& target) const {
+  return guard_.check(from, target, triangles_[cluster], near_gap_[cluster] != NearGap::none).crossed ||
+         std::any_of(movers_.begin(), movers_.end(),
+                     [&](const MovingWall& wall) { return wall.stops(from, cluster, target); });
 }
 
 bool BoundaryParticles::has_thin() const {

@@ -52,7 +52,7 @@ class BoundaryParticles {
   /// @param nearest distance from the start to the nearest boundary particle (m)
   Hold hold(const Vec3& from, std::size_t cluster, double nearest, Vec3& target, Vec3& velocity) const {
     const bool far = nearest >= coverage_radius * sample_spacing_ + (target - from).norm() + last_shift_;
-    if (far && near_gap_[cluster] == 0) return {};
+    if (far && near_gap_[cluster] == NearGap::none) return {};
     return hold_near(from, cluster, target, velocity);
   }
 
@@ -71,9 +71,16 @@ class BoundaryParticles {
   void scale_adhesions(const SolverSettings& settings, const WallKernel& wall);
   Hold hold_near(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
   bool keep_out(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
+  /// Whether gaps between walls that move and others may be near; if so their triangles are collected.
+  bool collect_between(std::size_t cluster, const Vec3& low, const Vec3& high, double margin);
+  bool keep_out_between(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
+  bool stops(const Vec3& from, std::size_t cluster, const Vec3& target) const;
   Hold hold_between(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
 
+  enum class NearGap : std::uint8_t { none, within, between };  // in some wall; also between those that move and others
+
   double sample_spacing_ = 0, support_ = 0;  // m, of the walls' kernel
+  double gap_width_ = 0;                     // m
   PeriodicBox periodic_;
   Vec3 origin_ = Vec3::Zero();
   std::vector<Vec3> positions_;           // m
@@ -87,7 +94,7 @@ class BoundaryParticles {
   ThinWalls thin_;                                     // of the resting walls
   std::vector<std::vector<std::uint32_t>> triangles_;  // of the resting walls: one list a cluster
   std::vector<MovingWall> movers_;
-  std::vector<std::uint8_t> near_gap_;  // of some wall; one entry a cluster
+  std::vector<NearGap> near_gap_;  // one entry a cluster
   double greatest_speed_ = 0, last_shift_ = 0, build_time_ = 0, time_ = 0;
 };
 

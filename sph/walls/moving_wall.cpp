@@ -72,16 +72,31 @@ void MovingWall::mark_build(std::size_t clusters) {
   near_gap_.assign(clusters, 0);
 }
 
-bool MovingWall::collect_triangles(std::size_t cluster, const Vec3& low, const Vec3& high, double margin) {
+Box MovingWall::box_at_rest(const Vec3& low, const Vec3& high) const {
   const Vec3 shift = image_shift(0.5 * (low + high), now_);
-  Vec3 rest_low = Vec3::Constant(1e300), rest_high = -rest_low;
+  Box box{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
   for (int k = 0; k < 8; ++k) {
     const Vec3 p = now_.to_rest(corner(low, high, k) + shift);
-    rest_low = rest_low.cwiseMin(p);
-    rest_high = rest_high.cwiseMax(p);
+    box.min = box.min.cwiseMin(p);
+    box.max = box.max.cwiseMax(p);
   }
-  near_gap_[cluster] = guard_.collect(rest_low, rest_high, margin, triangles_[cluster]);
+  return box;
+}
+
+bool MovingWall::collect_triangles(std::size_t cluster, const Vec3& low, const Vec3& high, double margin) {
+  const Box box = box_at_rest(low, high);
+  near_gap_[cluster] = guard_.collect(box.min, box.max, margin, triangles_[cluster]);
   return near_gap_[cluster] != 0;
+}
+
+void MovingWall::find_triangles(const Vec3& low, const Vec3& high, std::vector<std::uint32_t>& found) const {
+  const Box box = box_at_rest(low, high);
+  guard_.query_touching(box.min, box.max, found);
+}
+
+void MovingWall::mark_gap(std::size_t cluster, const std::vector<std::uint32_t>& triangles) {
+  triangles_[cluster] = triangles;
+  near_gap_[cluster] = 1;
 }
 
 Hold MovingWall::hold(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const {
@@ -101,6 +116,17 @@ Hold MovingWall::hold(const Vec3& from, std::size_t cluster, Vec3& target, Vec3&
   const Vec3 normal = now_.rotation * crossing.normal;
   velocity -= std::min(0.0, (velocity - now_.velocity_at(target + shift)).dot(normal)) * normal;
   return result;
+}
+
+bool MovingWall::stops(const Vec3& from, std::size_t cluster, const Vec3& target) const {
+  const MetWall wall = met(from, cluster);
+  return guard_
+      .check(wall.at_rest(from, target, 0), wall.at_rest(from, target, 1), triangles_[cluster], near_gap_[cluster] != 0)
+      .crossed;
+}
+
+MetWall MovingWall::met(const Vec3& from, std::size_t cluster) const {
+  return {&guard_, &triangles_[cluster], &before_, &now_, image_shift(from, before_)};
 }
 
 bool MovingWall::near_thin(const Vec3& center) const {

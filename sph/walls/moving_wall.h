@@ -6,6 +6,7 @@
 
 #include "sph/geometry/periodic_box.h"
 #include "sph/walls/boundary_motion.h"
+#include "sph/walls/gaps_between.h"
 #include "sph/walls/thin_walls.h"
 #include "sph/walls/wall_guard.h"
 
@@ -43,10 +44,19 @@ class MovingWall {
   void mark_build(std::size_t clusters);
   /// Says whether a gap of this wall is near.
   bool collect_triangles(std::size_t cluster, const Vec3& low, const Vec3& high, double margin);
+  /// Triangles that may touch the box (m) where the wall is now.
+  void find_triangles(const Vec3& low, const Vec3& high, std::vector<std::uint32_t>& found) const;
+  /// A gap between this wall and another is near: takes a wider choice of triangles.
+  void mark_gap(std::size_t cluster, const std::vector<std::uint32_t>& triangles);
 
   /// Where a particle's path in the last move passes this wall: puts its end back to the side where it began, carried
   /// along with the wall, and takes the velocity towards the wall away. Keeps it out of the wall's narrow gaps, too.
   Hold hold(const Vec3& from, std::size_t cluster, Vec3& target, Vec3& velocity) const;
+
+  /// Whether a path in the last move passes this wall.
+  bool stops(const Vec3& from, std::size_t cluster, const Vec3& target) const;
+  /// This wall as a particle meets it that was at `from` before the last move.
+  MetWall met(const Vec3& from, std::size_t cluster) const;
 
   /// As ThinWalls, with places where the wall is now.
   bool is_thin() const { return !thin_.empty(); }
@@ -57,6 +67,8 @@ class MovingWall {
 
  private:
   double farthest_shift(const Pose& since) const;
+  /// Box in the wall's own frame around one where it is now.
+  Box box_at_rest(const Vec3& low, const Vec3& high) const;
   /// Shift (m) to the image of a place that the triangles at rest are tested against.
   Vec3 image_shift(const Vec3& place, const Pose& pose) const;
 

@@ -10,9 +10,7 @@ namespace flowskin::sph {
 
 namespace {
 
-constexpr double on_wall = 0.1;     // a middle between two samples nearer to a wall than this share of their distance
-constexpr double path_pieces = 20;  // pieces of a path, in a gap's width: so finely it is looked at
-constexpr double opposite = -0.5;   // cosine: walls in directions more than 120 degrees apart are opposite each other
+constexpr double on_wall = 0.1;  // a middle between two samples nearer to a wall than this share of their distance
 
 bool is_near(const WallGuard::Triangle& t, const Vec3& p, double distance) {
   if (std::abs(t.normal.dot(p - t.a)) > distance) return false;
@@ -21,46 +19,40 @@ bool is_near(const WallGuard::Triangle& t, const Vec3& p, double distance) {
 
 }  // namespace
 
-// Where a point touches walls: the nearest point of each triangle within reach.
-struct WallGuard::Touch {
-  Vec3 place, way;  // m; the way leads from the point to the place
-  double distance;
-  std::uint32_t triangle;
-};
-
-bool WallGuard::is_nearest_around(const Touch& touch, const std::vector<Touch>& touches) const {
-  return std::none_of(touches.begin(), touches.end(), [&](const Touch& other) {
-    return other.distance < touch.distance && is_near(triangles_[other.triangle], touch.place, hair());
-  });
-}
-
-WallGuard::Crossing WallGuard::gap_at(const Vec3& p, const std::vector<std::uint32_t>& candidates) const {
-  std::vector<Touch> touches;
+bool WallGuard::add_touches(const Vec3& p, const std::vector<std::uint32_t>& candidates,
+                            std::vector<Touch>& touches) const {
   for (const std::uint32_t k : candidates) {
     const Triangle& t = triangles_[k];
     if (std::abs(t.normal.dot(p - t.a)) >= gap_width_) continue;
     const Vec3 place = closest_on_triangle(p, t.a, t.b, t.c, t.normal);
     const double distance = (place - p).norm();
-    if (distance < hair()) return {};
-    if (distance < gap_width_) touches.push_back({place, place - p, distance, k});
+    if (distance < hair()) return false;
+    if (distance < gap_width_) touches.push_back({place, place - p, distance, k, 0, place});
   }
-  // The narrowest pair of walls opposite each other. A flat wall of many triangles is met in one place only: the
-  // nearest points of the other triangles have a nearer one beside them.
-  Crossing result;
-  double narrowest = gap_width_;
-  for (std::size_t k = 0; k < touches.size(); ++k) {
-    for (std::size_t l = 0; l < k; ++l) {
-      const Touch &a = touches[k], &b = touches[l];
-      if (a.way.dot(b.way) > opposite * a.distance * b.distance) continue;
-      const Vec3 across = a.place - b.place;
-      const double width = across.norm();
-      if (!(width < narrowest) || !is_nearest_around(a, touches) || !is_nearest_around(b, touches)) continue;
-      narrowest = width;
-      const Vec3 out = -0.5 * (a.way + b.way);
-      result = {true, out - out.dot(across) / (width * width) * across};
-    }
-  }
-  return result;
+  return true;
+}
+
+bool WallGuard::is_nearest_around(const Touch& touch, const std::vector<Touch>& touches) const {
+  return std::none_of(touches.begin(), touches.end(), [&](const Touch& other) {
+    return other.distance < touch.distance && other.wall == touch.wall &&
+           is_near(triangles_[other.triangle], touch.place_at_rest, hair());
+  });
+}
+
+// A flat wall of many triangles is met in one place only: the nearest points of the other triangles have a nearer one
+// beside them.
+WallGuard::Crossing WallGuard::gap_at(const Vec3& p, const std::vector<std::uint32_t>& candidates) const {
+  std::vector<Touch> touches;
+  if (!add_touches(p, candidates, touches)) return {};
+  const Facing facing = narrowest(touches, gap_width_, [&](const Touch& a, const Touch& b) {
+    return is_nearest_around(a, touches) && is_nearest_around(b, touches);
+  });
+  return {facing.found, facing.out};
+}
+
+int WallGuard::path_pieces(double length, double width) {
+  constexpr double pieces = 20;  // in a gap's width
+  return static_cast<int>(std::ceil(pieces * length / width));
 }
 
 WallGuard::Crossing WallGuard::enter_gap(const Vec3& from, const Vec3& to,
@@ -70,7 +62,7 @@ WallGuard::Crossing WallGuard::enter_gap(const Vec3& from, const Vec3& to,
   const double length = way.norm();
   // Cells with a gap reach farther than a path.
   if (!std::binary_search(gap_cells_.begin(), gap_cells_.end(), cell_at(to, gap_width_))) return {};
-  const int pieces = static_cast<int>(std::ceil(path_pieces * length / gap_width_));
+  const int pieces = path_pieces(length, gap_width_);
   for (int k = 1; k <= pieces; ++k) {
     Crossing gap = gap_at(from + (double(k) / pieces) * way, candidates);
     if (!gap.crossed) continue;
@@ -142,6 +134,17 @@ bool WallGuard::collect(const Vec3& low, const Vec3& high, double margin, std::v
   const Vec3 reach = Vec3::Constant(near ? margin + gap_width_ : margin);
   query(low - reach, high + reach, found);
   return near;
+}
+
+void WallGuard::query_touching(const Vec3& box_min, const Vec3& box_max, std::vector<std::uint32_t>& found) const {
+  query(box_min, box_max, found);
+  const Vec3 center = 0.5 * (box_min + box_max), half = 0.5 * (box_max - box_min);
+  std::erase_if(found, [&](std::uint32_t k) {
+    const Triangle& t = triangles_[k];
+    const Vec3 low = t.a.cwiseMin(t.b).cwiseMin(t.c), high = t.a.cwiseMax(t.b).cwiseMax(t.c);
+    return (low - box_max).maxCoeff() > 0 || (box_min - high).maxCoeff() > 0 ||
+           std::abs(t.normal.dot(center - t.a)) > t.normal.cwiseAbs().dot(half);
+  });
 }
 
 bool WallGuard::near_gap(const Vec3& low, const Vec3& high) const {

@@ -35,6 +35,9 @@ class WallGuard {
   /// Replaces `found` by the triangles that may touch the box, in ascending order.
   void query(const Vec3& box_min, const Vec3& box_max, std::vector<std::uint32_t>& found) const;
 
+  /// query(), without triangles whose own box or plane does not touch the box.
+  void query_touching(const Vec3& box_min, const Vec3& box_max, std::vector<std::uint32_t>& found) const;
+
   /// query() around a box, `margin` (m) wide, wider near gaps; says whether it is near one.
   bool collect(const Vec3& low, const Vec3& high, double margin, std::vector<std::uint32_t>& found) const;
 
@@ -58,6 +61,32 @@ class WallGuard {
   /// @param normal out: unit vector out of the gap
   bool keep_out(const Vec3& from, const std::vector<std::uint32_t>& candidates, Vec3& to, Vec3& normal) const;
 
+  /// Where a point touches a wall: the nearest point of a triangle that is nearer than the width of gaps.
+  struct Touch {
+    Vec3 place, way;  ///< m; the way leads from the point to the place
+    double distance;
+    std::uint32_t triangle;
+    std::uint32_t wall = 0;             ///< Which one, where several are looked at together,
+    Vec3 place_at_rest = Vec3::Zero();  ///< and the place in that one's own frame.
+  };
+  /// Adds the touches of a point; says whether it lies beside all triangles.
+  bool add_touches(const Vec3& p, const std::vector<std::uint32_t>& candidates, std::vector<Touch>& touches) const;
+  /// Whether no other triangle of this wall that the place lies on comes nearer.
+  bool is_nearest_around(const Touch& touch, const std::vector<Touch>& touches) const;
+
+  /// Two touches opposite each other.
+  struct Facing {
+    bool found = false;
+    std::size_t first = 0, second = 0;
+    Vec3 out = Vec3::Zero();  ///< Leads out from between them; of any length (m).
+  };
+  /// The narrowest pair of touches opposite each other whose places are nearer together than `width` (m).
+  /// @param counts whether a pair counts: a function of two touches
+  template <typename Counts>
+  static Facing narrowest(const std::vector<Touch>& touches, double width, Counts counts);
+  /// Pieces of a path in which it is looked at for gaps.
+  static int path_pieces(double length, double width);
+
   struct Triangle {
     Vec3 a, b, c, normal;
   };
@@ -73,7 +102,6 @@ class WallGuard {
     std::uint64_t cell;
     std::uint32_t triangle;
   };
-  struct Touch;
   std::uint64_t cell_key(std::int64_t x, std::int64_t y, std::int64_t z) const;
   std::array<std::int64_t, 3> cell_of(const Vec3& p, double cell_size) const;
   std::uint64_t cell_at(const Vec3& p, double cell_size) const;
@@ -84,8 +112,6 @@ class WallGuard {
   /// Whether a place in the box may be in a gap.
   bool near_gap(const Vec3& low, const Vec3& high) const;
   bool is_on_wall(const Vec3& p, double distance, const std::vector<std::uint32_t>& candidates) const;
-  /// Whether no other triangle that the place lies on comes nearer.
-  bool is_nearest_around(const Touch& touch, const std::vector<Touch>& touches) const;
   /// Whether p is in a gap; the normal leads out of it and has any length.
   Crossing gap_at(const Vec3& p, const std::vector<std::uint32_t>& candidates) const;
   /// The same of the first place of a path that is in a gap, with a unit normal; none where the path begins in one.
@@ -107,6 +133,26 @@ void WallGuard::for_each_cell(const Vec3& low, const Vec3& high, double cell_siz
       for (auto z = first[2]; z <= last[2]; ++z) visit(cell_key(x, y, z));
     }
   }
+}
+
+template <typename Counts>
+WallGuard::Facing WallGuard::narrowest(const std::vector<Touch>& touches, double width, Counts counts) {
+  constexpr double opposite = -0.5;  // cosine: directions more than 120 degrees apart
+  Facing result;
+  double least = width;
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    for (std::size_t l = 0; l < k; ++l) {
+      const Touch &a = touches[k], &b = touches[l];
+      if (a.way.dot(b.way) > opposite * a.distance * b.distance) continue;
+      const Vec3 across = a.place - b.place;
+      const double apart = across.norm();
+      if (!(apart < least) || !counts(a, b)) continue;
+      least = apart;
+      const Vec3 out = -0.5 * (a.way + b.way);
+      result = {true, k, l, out - out.dot(across) / (apart * apart) * across};
+    }
+  }
+  return result;
 }
 
 }  // namespace flowskin::sph
