@@ -311,6 +311,177 @@ TEST(Gaps, FluidBetweenCloseWallsStaysCalm) {
   }
 }
 
+// Gaps between a wall that moves and others. What moves is the last wall, and takes the mouth along.
+
+Boundary moved(const TriangleMesh& mesh, const Vec3& velocity, double turns = 0) {
+  Boundary wall{mesh, 0};
+  wall.motion = motion_of({{0, Vec3::Zero(), Vec3::Zero()}, {1, velocity, Vec3(0, 0, 360 * turns)}});
+  return wall;
+}
+
+// A gate across a channel along x, `width` above the floor y = 0, as thick as asked; and what is beneath it, as deep as
+// it may rise.
+TriangleMesh gate(double width, double thickness) {
+  return closed_box({-thickness / 2, width, -0.2}, {thickness / 2, 0.4, 0.2});
+}
+TriangleMesh beneath(double width) {
+  TriangleMesh mesh;
+  add_quad(mesh, {0, -0.1, -0.4}, {0, -0.1, 0.4}, {0, width, 0.4}, {0, width, -0.4});
+  return mesh;
+}
+
+SimulationSetup channel(const FluidBody& body) {
+  SimulationSetup setup = shot(closed_box({-0.2, 0, -0.06}, {0.3, 0.4, 0.06}), {body});
+  setup.settings.max_speed = 4;
+  return setup;
+}
+
+TEST(Gaps, UnderAGateLetNothingThrough) {
+  struct Shot {
+    double thickness, speed, rise;
+  };
+  for (const double width : {0.02, 0.3, 0.9}) {
+    for (const auto& [thickness, speed, rise] :
+         {Shot{0.5, 2, 0}, Shot{0.5, 8, 0.02}, Shot{2, 8, 0}, Shot{2, 2, 0.02}}) {
+      const double x = -0.5 * thickness * spacing - 0.015;
+      SimulationSetup setup = shot(sheet(0.4, 0), {block({x - 0.09, 0, -0.045}, {x, 0.06, 0.045}, {speed, -0.1, 0})});
+      setup.boundaries.push_back(moved(gate(width * spacing, thickness * spacing), {0, rise, 0}));
+      const Outcome outcome = shoot(setup, 0.15 / speed, beneath(width * spacing));
+      const auto where = testing::Message() << width << ' ' << thickness << ' ' << speed << ' ' << rise;
+      EXPECT_EQ(outcome.through_mouth, 0) << where;
+      EXPECT_EQ(outcome.passed, 0) << where;
+      EXPECT_EQ(outcome.statistics.squeezed_through, 0U) << where;
+    }
+  }
+}
+
+// A column of water presses against the gate.
+Outcome press(double width, double thickness, double rise) {
+  SimulationSetup setup = channel(block({-0.195, 0, -0.06}, {-0.045, 0.18, 0.06}, Vec3::Zero()));
+  setup.settings.gravity = {0, -9.81, 0};
+  setup.boundaries.push_back(moved(gate(width * spacing, thickness * spacing), {0, rise, 0}));
+  return shoot(setup, 0.25, beneath(width * spacing));
+}
+
+TEST(Gaps, UnderAGateHoldAColumn) {
+  for (const double width : {0.02, 0.3, 0.85}) {
+    for (const bool rises : {false, true}) {
+      const Outcome outcome = press(width, rises ? 0.5 : 2.0, rises ? 0.01 : 0.0);
+      EXPECT_EQ(outcome.through_mouth, 0) << width << ' ' << rises;
+      EXPECT_EQ(outcome.passed, 0) << width << ' ' << rises;
+    }
+  }
+}
+
+TEST(Gaps, UnderARaisedGateLetFluidThrough) {
+  for (const double thickness : {0.5, 2.0}) {
+    const Outcome outcome = press(3, thickness, 0);
+    EXPECT_GT(outcome.through_mouth, 20) << thickness;
+    EXPECT_EQ(outcome.passed, 0) << thickness;
+    EXPECT_EQ(outcome.statistics.kept_out_of_gaps, 0U) << thickness;
+  }
+}
+
+TEST(Gaps, AroundAPaddleLetNothingThrough) {
+  // It sweeps along a tank, half a spacing from its sides, through fluid four layers high or through a film.
+  constexpr double side_gap = 0.5 * spacing;
+  for (const double width : {0.5, 0.9}) {
+    const double gap = width * spacing;
+    const TriangleMesh paddle = closed_box({-0.195, gap, -0.06 + side_gap}, {-0.165, 0.3, 0.06 - side_gap});
+    TriangleMesh mouth;
+    add_quad(mouth, {-0.18, -0.1, -0.1}, {-0.18, -0.1, 0.1}, {-0.18, gap, 0.1}, {-0.18, gap, -0.1});
+    for (const double side : {-1.0, 1.0}) {
+      const double edge = side * (0.06 - side_gap);
+      add_quad(mouth, {-0.18, gap, edge}, {-0.18, 0.3, edge}, {-0.18, 0.3, side * 0.1}, {-0.18, gap, side * 0.1});
+    }
+    for (const double height : {0.03, 0.12}) {
+      for (const double speed : {0.5, 3.0}) {
+        SimulationSetup setup = channel(block({-0.15, 0, -0.06}, {0.06, height, 0.06}, Vec3::Zero()));
+        setup.settings.gravity = {0, -9.81, 0};
+        setup.boundaries.push_back(moved(paddle, {speed, 0, 0}));
+        const Outcome outcome = shoot(setup, 0.15 / speed, mouth);
+        EXPECT_EQ(outcome.through_mouth, 0) << width << ' ' << height << ' ' << speed;
+        EXPECT_EQ(outcome.passed, 0) << width << ' ' << height << ' ' << speed;
+        EXPECT_EQ(outcome.statistics.squeezed_through, 0U) << width << ' ' << height << ' ' << speed;
+      }
+    }
+  }
+}
+
+TEST(Gaps, AroundARotorLetNothingThrough) {
+  // A sheet turns in a drum that rests, half a spacing from its ends.
+  constexpr double radius = 0.15, depth = 0.06;
+  constexpr int sides = 24;
+  TriangleMesh drum;
+  const auto at = [](int k, double z) {
+    return Vec3(radius * std::cos(2 * M_PI * k / sides), radius * std::sin(2 * M_PI * k / sides), z);
+  };
+  for (int k = 0; k < sides; ++k) {
+    add_quad(drum, at(k, -depth), at(k + 1, -depth), at(k + 1, depth), at(k, depth));
+    add_quad(drum, at(k, -depth), at(k + 1, -depth), {0, 0, -depth}, {0, 0, -depth});
+    add_quad(drum, at(k, depth), at(k + 1, depth), {0, 0, depth}, {0, 0, depth});
+  }
+  for (const double width : {0.5, 0.9}) {
+    const double tip = radius - width * spacing, end = depth - 0.5 * spacing;
+    TriangleMesh rotor, mouth;
+    add_quad(rotor, {-tip, 0, -end}, {tip, 0, -end}, {tip, 0, end}, {-tip, 0, end});
+    for (const double side : {-1.0, 1.0}) {
+      add_quad(mouth, {side * tip, 0, -depth}, {side * 0.2, 0, -depth}, {side * 0.2, 0, depth}, {side * tip, 0, depth});
+      add_quad(mouth, {-tip, 0, side * end}, {tip, 0, side * end}, {tip, 0, side * 0.1}, {-tip, 0, side * 0.1});
+    }
+    for (const double turns : {1.0, -4.0}) {
+      SimulationSetup setup = shot(drum, {block({-0.09, 0.015, -0.06}, {0.09, 0.105, 0.06}, Vec3::Zero())});
+      setup.settings.gravity = {0, -9.81, 0};
+      setup.settings.max_speed = 4;
+      setup.boundaries.push_back(moved(rotor, Vec3::Zero(), turns));
+      const Outcome outcome = shoot(setup, 0.2, mouth);
+      EXPECT_EQ(outcome.through_mouth, 0) << width << ' ' << turns;
+      EXPECT_EQ(outcome.passed, 0) << width << ' ' << turns;
+      EXPECT_EQ(outcome.statistics.squeezed_through, 0U) << width << ' ' << turns;
+    }
+  }
+}
+
+// One half of a mesh of two parts of equal size.
+TriangleMesh half(const TriangleMesh& mesh, int which) {
+  const int points = static_cast<int>(mesh.positions.size() / 2), first = which * points;
+  TriangleMesh part;
+  part.positions.assign(mesh.positions.begin() + first, mesh.positions.begin() + first + points);
+  for (const auto& t : mesh.triangles) {
+    if (t[0] / points == which) part.triangles.push_back({t[0] - first, t[1] - first, t[2] - first});
+  }
+  return part;
+}
+
+TEST(Gaps, BetweenMoversThatSlidePastEachOther) {
+  for (const double width : {0.02, 0.25, 0.9}) {
+    for (const TriangleMesh& both : {slotted_floor(width * spacing), two_blocks(width * spacing)}) {
+      for (const double speed : {0.3, 2.0}) {
+        SimulationSetup setup = shot(half(both, 0), {block({-0.06, 0.03, -0.06}, {0.06, 0.12, 0.06}, {0.1, -2, 0})});
+        setup.boundaries = {moved(half(both, 0), {0, 0.5, -speed}), moved(half(both, 1), {0, 0.5, speed})};
+        const Outcome outcome = shoot(setup, 0.06, slot(width * spacing));
+        EXPECT_EQ(outcome.through_mouth, 0) << width << ' ' << speed;
+        EXPECT_EQ(outcome.passed, 0) << width << ' ' << speed;
+      }
+    }
+  }
+}
+
+TEST(Gaps, ThatCloseOnFluidLetItOut) {
+  // A plate comes down on a floor, to 0.6 spacings.
+  SimulationSetup setup = shot(sheet(0.4, 0), {block({-0.06, 0, -0.06}, {0.06, 0.06, 0.06}, Vec3::Zero())});
+  setup.settings.max_speed = 6;
+  setup.boundaries.push_back({closed_box({-0.06, 0.068, -0.06}, {0.06, 0.1, 0.06}), 0});
+  setup.boundaries[1].motion = motion_of({{0, Vec3::Zero(), Vec3::Zero()}, {0.25, Vec3(0, -0.05, 0), Vec3::Zero()}},
+                                         BoundaryMotion::Interpolation::smooth);
+  const Outcome outcome = shoot(setup, 0.3);
+  EXPECT_EQ(outcome.passed, 0);
+  EXPECT_EQ(outcome.statistics.squeezed_through, 0U);
+  const auto is_out = [](const Vec3& p) { return std::max(std::abs(p.x()), std::abs(p.z())) > 0.06; };
+  const auto& places = outcome.end.positions;
+  EXPECT_GT(std::count_if(places.begin(), places.end(), is_out), 30);
+}
+
 TEST(MovingTightWalls, ShakenBoxLosesNothing) {
   SimulationSetup setup = shot(closed_box({-0.12, -0.12, -0.12}, {0.12, 0.12, 0.12}),
                                {block({-0.12, -0.12, -0.12}, {0.12, 0.03, 0.12}, Vec3::Zero())});
