@@ -44,7 +44,7 @@ struct SourceStatistics {
   std::uint64_t steps = 0;
   std::uint64_t left_domain = 0;
   std::uint64_t emitted = 0, drained = 0;  ///< by emitters, by sinks
-  std::uint64_t wall_crossings = 0;
+  std::uint64_t wall_crossings = 0, kept_out_of_gaps = 0;
   double kinetic_energy = 0;                             ///< J
   double potential_energy = 0;                           ///< J
   double mean_density_error = 0, max_density_error = 0;  ///< |density / rest density - 1|

@@ -76,6 +76,7 @@ SourceStatistics SimulationSource::statistics() const {
   statistics.emitted = solver.emitted;
   statistics.drained = solver.drained;
   statistics.wall_crossings = solver.wall_crossings;
+  statistics.kept_out_of_gaps = solver.kept_out_of_gaps;
   statistics.kinetic_energy = energy.kinetic;
   statistics.potential_energy = energy.potential;
   for (const double density : state_.densities) {

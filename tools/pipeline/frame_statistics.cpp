@@ -24,6 +24,7 @@ void describe_source(const scenes::ParticleSource& source, FrameRow& row) {
   row.emitted = statistics.emitted;
   row.drained = statistics.drained;
   row.wall_crossings = statistics.wall_crossings;
+  row.kept_out_of_gaps = statistics.kept_out_of_gaps;
 }
 
 int count_common(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {

@@ -309,8 +309,9 @@ void SceneRun::finish() {
   if (tracker_)
     if (const std::string line = worst_frames(rows_, tracker_->settings().edge_length); !line.empty()) log_.info(line);
   const auto& last = rows_.back();
-  log_.info(fmt::format("particles that left the domain: {}; poured: {}; drained: {}; paths stopped at a wall: {}",
-                        last.left_domain, last.emitted, last.drained, last.wall_crossings));
+  log_.info(fmt::format(
+      "particles that left the domain: {}; poured: {}; drained: {}; paths stopped at a wall: {}, at a narrow gap: {}",
+      last.left_domain, last.emitted, last.drained, last.wall_crossings, last.kept_out_of_gaps));
   if (comparison_)
     for (const std::string& line : comparison_->ranking()) log_.info(line);
   if (saved_ == scene_.frames) checkpoints_.mark_complete(scene_.frames);

@@ -36,7 +36,8 @@ struct FrameRow {
   std::uint64_t steps = 0;                   ///< solver steps since the start
   double time_step = 0;                      ///< s, the last one
   double mean_density_error = 0, max_density_error = 0;
-  std::uint64_t left_domain = 0, emitted = 0, drained = 0, wall_crossings = 0;  ///< since the start
+  std::uint64_t left_domain = 0, emitted = 0, drained = 0;  ///< since the start
+  std::uint64_t wall_crossings = 0, kept_out_of_gaps = 0;   ///< since the start
   double seconds_source = 0, seconds_tracking = 0, seconds_topology = 0, seconds_writing = 0, seconds_pictures = 0,
          seconds_statistics = 0;
 
@@ -89,6 +90,7 @@ void for_each_frame_column(Row& row, Visit visit) {
   visit("emitted", row.emitted);
   visit("drained", row.drained);
   visit("wall_crossings", row.wall_crossings);
+  visit("kept_out_of_gaps", row.kept_out_of_gaps);
   visit("seconds_source", row.seconds_source);
   visit("seconds_tracking", row.seconds_tracking);
   visit("seconds_topology", row.seconds_topology);
