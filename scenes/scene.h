@@ -89,7 +89,8 @@ struct TrackingSpec {
   std::string fairing_springs = "constant";  ///< constant, variable
   bool confidence = false;                   ///< Write how well the field determines the velocity.
   bool remeshing = true;                     ///< Split, collapse and flip edges of a stretching surface.
-  double max_slip = 1;                       ///< Of the texture off its particles, in spacings; 0: any distance.
+  double max_slip = -1;                      ///< Of the texture off its particles, in spacings; 0: any distance;
+                                             ///< negative: max_slip_of() chooses.
   bool topology = true;
   bool guard = true;
 };

@@ -352,8 +352,10 @@ Table<Scene> tracking_keys(const SceneVocabulary& vocabulary) {
       key<S>("tracking.remeshing", at(tracking, &T::remeshing), boolean(), "",
              "Split, collapse and flip edges of a stretching surface; false: a mesh of constant triangles, as in the "
              "paper."),
-      key<S>("tracking.max_slip", at(tracking, &T::max_slip), number(at_least(0, 1000)), "spacings",
-             "How far the texture may slip off the particles' material; 0: any distance, to see what a method does."),
+      key<S>("tracking.max_slip", at(tracking, &T::max_slip), number(at_least(-1, 1000)), "spacings",
+             "How far the texture may slip off the particles' material; 0: any distance; negative: 1 where an emitter "
+             "pours or the motion is prescribed, else any distance, as particles of a simulation mix and would make "
+             "noise of the texture."),
       key<S>("tracking.topology", at(tracking, &T::topology), boolean(), "",
              "Let the surface merge, split, open and close with the fluid: regions that no longer fit are replaced."),
       key<S>("tracking.guard", at(tracking, &T::guard), boolean(), "",

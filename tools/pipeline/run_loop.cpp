@@ -129,9 +129,10 @@ void SceneRun::describe() {
     const tracking::TrackerSettings& settings = tracker_->settings();
     log_.info(fmt::format(
         "surface: {} vertices, velocity {}, {}, effective radius {:.4g} m, threshold {:.4g}, edge {:.4g} m, {} "
-        "fairing iterations",
+        "fairing iterations, texture slips {}",
         tracker_->mesh().positions.size(), settings.velocity, scene_.tracking.integrator, settings.field.radius,
-        settings.field.threshold, settings.edge_length, settings.fairing_iterations));
+        settings.field.threshold, settings.edge_length, settings.fairing_iterations,
+        settings.max_slip > 0 ? fmt::format("{:.4g} m at most", settings.max_slip) : "freely"));
   }
   if (comparison_) log_.info(comparison_->description());
   if (saved_ >= 0) log_.info(fmt::format("resumed after frame {}", saved_));

@@ -19,6 +19,11 @@ std::string velocity_method_for(const std::string& name, const scenes::ParticleS
   return state.has_velocities ? "hybrid" : "affine";
 }
 
+double max_slip_of(const scenes::Scene& scene) {
+  if (scene.tracking.max_slip >= 0) return scene.tracking.max_slip;
+  return scene.particles.source == scenes::ParticlesSpec::Source::prescribed || !scene.emitters.empty() ? 1 : 0;
+}
+
 tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
   const scenes::TrackingSpec& spec = scene.tracking;
   const double spacing = scene.particles.spacing;
@@ -41,7 +46,7 @@ tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
   settings.fairing_stiffness = spec.fairing_stiffness;
   settings.variable_springs = spec.fairing_springs == "variable";
   settings.remeshing = spec.remeshing;
-  settings.max_slip = spec.max_slip * spacing;
+  settings.max_slip = max_slip_of(scene) * spacing;
   settings.topology = spec.topology;
   settings.guard = spec.guard;
   return settings;

@@ -24,6 +24,11 @@ std::string velocity_method_for(const std::string& name, const scenes::ParticleS
 /// Lengths that the scene gives in spacings become metres.
 tracking::TrackerSettings tracker_settings(const scenes::Scene& scene);
 
+/// How far the texture may slip off its particles (spacings); 0: any distance. Where the scene does not say: 1 where an
+/// emitter pours, as new surface would go on with the material of its neighbours, and where the motion is prescribed.
+/// Else any distance: particles of a simulation mix, and a texture that is held to each of them is noise.
+double max_slip_of(const scenes::Scene& scene);
+
 /// Saves or restores a tracker, which is made from its settings before.
 template <class Archive>
 void visit_tracker(Archive& archive, tracking::Tracker& tracker) {
