@@ -217,13 +217,18 @@ TEST(TextureGenerations, NothingThatShowsJumps) {
                        now[frame.mesh.ids[v]] = shown;
                        const auto found = last.find(frame.mesh.ids[v]);
                        if (found == last.end()) continue;
-                       ++kept;
                        const Shown& before = found->second;
+                       // A vertex of a replaced region may have slid: it shows the texture of its new place.
+                       const bool has_stayed = shown.first == before.first && shown.second == before.second;
+                       const bool took_over = shown.first == before.second;
+                       const bool one_began = shown.first == before.first && before.first == before.second;
+                       if (!has_stayed && !took_over && !one_began) continue;
+                       ++kept;
                        ASSERT_NEAR(share_of(shown, before.first), share_of(before, before.first), most) << frame.time;
                        ASSERT_NEAR(share_of(shown, before.second), share_of(before, before.second), most) << frame.time;
                        promoted += before.first != shown.first;
                      }
-                     EXPECT_TRUE(last.empty() || kept > 0);
+                     EXPECT_TRUE(last.empty() || kept > 0.8 * double(now.size())) << kept << " of " << now.size();
                      last = std::move(now);
                      generations_seen = generations.generations();
                    });
