@@ -20,6 +20,16 @@ struct Probe {
   int winding;
 };
 
+// Grid coordinates of a place on a line along an axis; of a node where the place is a whole number.
+template <class Coordinates, class Place>
+Coordinates on_line(const std::array<int, 2>& line, int axis, Place place) {
+  Coordinates coordinates{};
+  coordinates[axis] = place;
+  coordinates[(axis + 1) % 3] = line[0];
+  coordinates[(axis + 2) % 3] = line[1];
+  return coordinates;
+}
+
 // All cells that it lies in or on.
 void add_cells_around(const Probe& probe, std::vector<Cell>& cells) {
   add_cells(probe.coordinates.array().ceil() - 1, probe.coordinates.array().floor(), cells);
@@ -32,22 +42,9 @@ void probe_edges(const std::vector<GridCrossing>& crossings, int axis, std::vect
     for (const GridCrossing* crossing = begin; crossing + 1 < end; ++crossing) {
       winding += crossing->change;
       if (std::floor(crossing->place) != std::floor(crossing[1].place)) continue;
-      Probe probe{Vec3::Zero(), winding};
-      probe.coordinates[axis] = (crossing->place + crossing[1].place) / 2;
-      probe.coordinates[(axis + 1) % 3] = crossing->line[0];
-      probe.coordinates[(axis + 2) % 3] = crossing->line[1];
-      probes.push_back(probe);
+      probes.push_back({on_line<Vec3>(crossing->line, axis, (crossing->place + crossing[1].place) / 2), winding});
     }
   });
-}
-
-// The node at a grid coordinate of a line along an axis.
-SparseGrid::Index node_on_line(const std::array<int, 2>& line, int axis, int place) {
-  SparseGrid::Index node{};
-  node[axis] = place;
-  node[(axis + 1) % 3] = line[0];
-  node[(axis + 2) % 3] = line[1];
-  return node;
 }
 
 // Where between 0 and 1 a parabola is zero that is f at 0 and g at 1, of the other sign, and has this second
@@ -64,7 +61,7 @@ double root_of_parabola(double f, double g, double second_difference) {
 // before and behind it.
 bool may_be_displaced(const SparseGrid& grid, const GridCrossing& crossing, int axis, double apart) {
   const int low = static_cast<int>(std::floor(crossing.place));
-  const auto value = [&](int place) { return grid.value(node_on_line(crossing.line, axis, place)); };
+  const auto value = [&](int place) { return grid.value(on_line<SparseGrid::Index>(crossing.line, axis, place)); };
   const double f = value(low), g = value(low + 1);
   if ((f > 0) == (g > 0)) return false;
   return std::ranges::any_of(
@@ -86,11 +83,7 @@ void probe_beside(const SparseGrid& grid, const std::vector<GridCrossing>& cross
       for (const int side : {-1, 1}) {
         const double place = crossing->place + side * apart;
         if (place <= low || place >= low + 1) continue;
-        Probe probe{Vec3::Zero(), side * crossing->change > 0 ? 1 : 0};
-        probe.coordinates[axis] = place;
-        probe.coordinates[(axis + 1) % 3] = crossing->line[0];
-        probe.coordinates[(axis + 2) % 3] = crossing->line[1];
-        probes.push_back(probe);
+        probes.push_back({on_line<Vec3>(crossing->line, axis, place), side * crossing->change > 0 ? 1 : 0});
       }
     }
   });
