@@ -80,6 +80,7 @@ struct TrackingSpec {
   double max_motion = 0.25;          ///< in effective radii
   double radius = 2.5;               ///< Effective radius of a particle, in spacings.
   double threshold = 0;              ///< 0: the one that puts a flat surface half a spacing outside the particles
+  double wall_share = 0.45;          ///< Field of a bare wall, in thresholds; 0: the field knows no walls.
   double edge_length = 0.75;         ///< Edge length of an extracted mesh, in spacings.
   double curvature_edges = 0;        ///< Edges at most this multiple of the smaller radius of curvature; 0: all alike.
   double smallest_part = 0;          ///< Parts of fluid or air that enclose less are small; in cubes of the spacing.

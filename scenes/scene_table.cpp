@@ -332,6 +332,9 @@ Table<Scene> tracking_keys(const SceneVocabulary& vocabulary) {
              "Effective radius of a particle."),
       key<S>("tracking.threshold", at(tracking, &T::threshold), number(at_least(0, 1000)), "",
              "Threshold T of the field; 0: the one that puts a flat surface half a spacing outside the particles."),
+      key<S>("tracking.wall_share", at(tracking, &T::wall_share), number(at_least(0, 0.5)), "thresholds",
+             "Field on a bare wall: with it thin films on walls have a surface; 0: the field knows particles alone, as "
+             "in the paper."),
       key<S>("tracking.edge_length", at(tracking, &T::edge_length), number(at_least(0.05, 20)), "spacings",
              "Edge length of an extracted mesh."),
       key<S>(

@@ -159,7 +159,7 @@ class TrackerImpl {
 
   void rebuild_field() {
     field_.reset();
-    if (!particles_.positions.empty()) field_.emplace(field_of(particles_, settings_.field));
+    if (!particles_.positions.empty()) field_.emplace(field_of(particles_, settings_.field, settings_.walls_at(particles_.time)));
   }
 
   SurfaceGeometry extract_raw() const { return extract_raw_surface(*field_, settings_.edge_length); }
@@ -210,12 +210,12 @@ class TrackerImpl {
     report_.substeps =
         static_cast<int>(std::clamp(std::ceil(paths.longest_path() / limit), 1.0, double{kMostSubsteps}));
     const double duration = paths.end_time() - paths.begin_time();
-    const auto field_at = [&](double time) { return paths.field(time, settings_.field); };
+    const auto field_at = [&](double time) { return paths.field(time, settings_.field, settings_.walls_at(time)); };
     // The velocities of the last call hold at the start, unless particles come or go.
     std::vector<Vec3> first;
     if (paths.blended()) {
       if (duration != 0)
-        field_.emplace(paths.field(paths.begin_time(), settings_.field));  // the same, but for its rates
+        field_.emplace(field_at(paths.begin_time()));  // the same, but for its rates
     } else if (velocities_known_ && particles_.ids == particles.ids) {
       first = mesh_.velocities;
     }

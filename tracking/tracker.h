@@ -32,6 +32,10 @@ struct TrackerSettings {
   SmallParts small_parts = SmallParts::keep;  ///< What becomes of them.
   bool topology = true;                       ///< Replace the regions where mesh and field disagree.
   bool guard = true;  ///< Replace the whole mesh where that of regions is off, or does not work.
+  WallsAt walls;      ///< What the fluid lies on; empty: nothing, or nothing that the surface should know of.
+
+  /// The walls at a time (s).
+  FieldWalls walls_at(double time) const { return walls ? walls(time) : FieldWalls{}; }
 };
 
 /// What happened in the last call of Tracker::advance, and how well the mesh fits now.

@@ -1,5 +1,7 @@
 #include "tools/pipeline/tracker_bridge.h"
 
+#include "tools/pipeline/field_walls.h"
+
 namespace flowskin::tools {
 
 tracking::Particles to_particles(const scenes::ParticleState& state) {
@@ -49,6 +51,7 @@ tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
   settings.max_slip = max_slip_of(scene) * spacing;
   settings.topology = spec.topology;
   settings.guard = spec.guard;
+  settings.walls = field_walls(scene, settings.field);
   return settings;
 }
 

@@ -104,9 +104,9 @@ void check_particles(const Particles& particles) {
   }
 }
 
-MetaballField field_of(const Particles& particles, const FieldSettings& settings) {
-  if (particles.weights.empty()) return MetaballField(particles.positions, particles.velocities, settings);
-  return MetaballField(parts_of(particles), settings);
+MetaballField field_of(const Particles& particles, const FieldSettings& settings, const FieldWalls& walls) {
+  if (!particles.weights.empty()) return MetaballField(parts_of(particles), settings, walls);
+  return MetaballField({{particles.positions, particles.velocities}}, settings, walls);
 }
 
 ParticlePaths::ParticlePaths(const Particles& from, const Particles& to, double longest_jump)
@@ -182,11 +182,11 @@ void ParticlePaths::at(double time, std::vector<Vec3>& positions, std::vector<Ve
   }
 }
 
-MetaballField ParticlePaths::field(double time, const FieldSettings& settings) const {
+MetaballField ParticlePaths::field(double time, const FieldSettings& settings, const FieldWalls& walls) const {
   if (!blended_) {
-    std::vector<Vec3> positions, velocities;
-    at(time, positions, velocities);
-    return MetaballField(std::move(positions), std::move(velocities), settings);
+    std::vector<FieldPart> all(1);
+    at(time, all.front().positions, all.front().velocities);
+    return MetaballField(std::move(all), settings, walls);
   }
   const double duration = end_ - begin_;
   const double s = time == end_ ? 1 : (time - begin_) / duration;
@@ -202,7 +202,7 @@ MetaballField ParticlePaths::field(double time, const FieldSettings& settings) c
   };
   add(late_, time == end_ ? 0 : time - end_, s, rate);
   add(early_, time - begin_, 1 - s, -rate);
-  return MetaballField(std::move(parts), settings);
+  return MetaballField(std::move(parts), settings, walls);
 }
 
 double ParticlePaths::longest_path() const {

@@ -13,7 +13,7 @@ namespace flowskin::tracking {
 void check_particles(const Particles& particles);
 
 /// The field of particles at one time; with time derivatives as far as they have velocities.
-MetaballField field_of(const Particles& particles, const FieldSettings& settings);
+MetaballField field_of(const Particles& particles, const FieldSettings& settings, const FieldWalls& walls = {});
 
 /// Particles of two states matched by id. A particle in both moves on the cubic Hermite curve through its positions
 /// with its velocities; one only in the later state comes in on a straight line, one only in the earlier goes on on
@@ -42,7 +42,8 @@ class ParticlePaths {
   void at(double time, std::vector<Vec3>& positions, std::vector<Vec3>& velocities) const;
 
   /// The field of these particles. Blended: those of the later state come first.
-  MetaballField field(double time, const FieldSettings& settings) const;
+  /// @param walls those at that time
+  MetaballField field(double time, const FieldSettings& settings, const FieldWalls& walls = {}) const;
 
   /// An upper bound of how far any particle moves from begin to end along its path (m). Blended: an estimate.
   double longest_path() const;

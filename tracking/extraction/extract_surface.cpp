@@ -92,7 +92,7 @@ void append(const SurfaceGeometry& part, SurfaceGeometry& whole) {
 }  // namespace
 
 SurfaceGeometry extract_raw_surface(const MetaballField& field, double edge_length) {
-  const SparseGrid grid = SparseGrid::of_particles(field.positions(), field.settings(), edge_length, field.shares());
+  const SparseGrid grid = SparseGrid::of_field(field, edge_length);
   return march(grid, [&](const Vec3& x) { return field.value(x); });
 }
 

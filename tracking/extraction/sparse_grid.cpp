@@ -188,6 +188,26 @@ SparseGrid SparseGrid::of_particles(const std::vector<Vec3>& positions, const Fi
   return grid;
 }
 
+SparseGrid SparseGrid::of_field(const MetaballField& field, double spacing) {
+  SparseGrid grid = of_particles(field.positions(), field.settings(), spacing, field.shares());
+  for (const auto& wall : field.walls()) grid.add_wall(*wall, field.settings());
+  return grid;
+}
+
+// Only to blocks that particles have made: a bare wall has no surface.
+void SparseGrid::add_wall(const FieldWall& wall, const FieldSettings& settings) {
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int b = 0; b < static_cast<int>(blocks_.size()); ++b) {
+    thread_local std::vector<Vec3> points;
+    Block& block = blocks_[b];
+    const Vec3 first = position({kSide * block.place[0], kSide * block.place[1], kSide * block.place[2]});
+    wall.near(first, first + Vec3::Constant((kSide - 1) * spacing_), settings.radius, points);
+    for (const Vec3& point : points) {
+      add_kernel((point - first) / spacing_, settings.radius / spacing_, wall.share() * settings.weight, block);
+    }
+  }
+}
+
 SparseGrid SparseGrid::of_values(const Index& size, const std::vector<double>& values, double outside, double spacing) {
   if (values.size() != static_cast<std::size_t>(size[0]) * size[1] * size[2] || !(spacing > 0)) {
     throw std::invalid_argument("sparse grid: " + std::to_string(values.size()) + " values for " +

@@ -29,6 +29,9 @@ class SparseGrid {
   static SparseGrid of_particles(const std::vector<Vec3>& positions, const FieldSettings& settings, double spacing,
                                  const std::vector<double>& shares = {});
 
+  /// The field's particles, and its walls where those are.
+  static SparseGrid of_field(const MetaballField& field, double spacing);
+
   /// A box of size[0] x size[1] x size[2] given values, z runs fastest, surrounded by the outside value.
   static SparseGrid of_values(const Index& size, const std::vector<double>& values, double outside, double spacing);
 
@@ -53,6 +56,7 @@ class SparseGrid {
  private:
   SparseGrid(double spacing, double outside) : spacing_(spacing), outside_(outside) {}
   void allocate(std::vector<std::uint64_t> keys);
+  void add_wall(const FieldWall& wall, const FieldSettings& settings);
 
   double spacing_;
   double outside_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "tracking/field/group_sums.h"
@@ -14,14 +15,16 @@ namespace flowskin::tracking {
 /// Everything about a point asks `groups(k)` for the groups of part k near it: all that have a particle nearer than the
 /// radius in question. A list is no longer looked at when the next one is asked for.
 struct MetaballField::Impl {
-  /// The neighbour lookup of one part.
+  /// The neighbour lookup of one part, or of a wall.
   struct Part {
-    ParticleBlocks blocks;
+    std::shared_ptr<const ParticleBlocks> blocks;
     double share, share_rate;
-    int first;  ///< Number of its first particle.
+    int first;  ///< Number of its first particle; -1: a wall, whose points are none.
+
+    bool is_wall() const { return first < 0; }
   };
 
-  Impl(std::vector<FieldPart> given, const FieldSettings& field_settings);
+  Impl(std::vector<FieldPart> given, const FieldSettings& field_settings, FieldWalls given_walls);
 
   template <class Groups>
   double value(const Vec3& x, const Groups& groups) const {
@@ -65,7 +68,7 @@ struct MetaballField::Impl {
   KernelMoments moments(const Vec3& x, const Groups& groups) const {
     KernelMoments sum;
     for (std::size_t k = 0; k < parts.size(); ++k) {
-      if (parts[k].share > 0) add_moments(near(k, groups), x, parts[k].share, sum);
+      if (parts[k].share > 0 && !parts[k].is_wall()) add_moments(near(k, groups), x, parts[k].share, sum);
     }
     return sum;
   }
@@ -74,9 +77,10 @@ struct MetaballField::Impl {
   void neighbors(const Vec3& x, double radius, std::vector<int>& found, const Groups& groups) const {
     found.clear();
     for (std::size_t k = 0; k < parts.size(); ++k) {
+      if (parts[k].is_wall()) continue;
       for (const int group : groups(k)) {
         for (int lane = 0; lane < lane_count; ++lane) {
-          const int in_part = parts[k].blocks.particle(group, lane);
+          const int in_part = parts[k].blocks->particle(group, lane);
           if (in_part < 0) continue;
           const int particle = parts[k].first + in_part;
           if ((positions[particle] - x).squaredNorm() < radius * radius) found.push_back(particle);
@@ -88,7 +92,7 @@ struct MetaballField::Impl {
 
   /// The groups around x by a lookup of their own.
   auto looked_up(const Vec3& x) const {
-    return [this, &x](std::size_t part) { return parts[part].blocks.near(x, settings.radius, scratch()); };
+    return [this, &x](std::size_t part) { return parts[part].blocks->near(x, settings.radius, scratch()); };
   }
   /// Where a thread keeps the numbers of the groups near its point, so that queries do not allocate.
   static std::vector<int>& scratch() {
@@ -98,7 +102,7 @@ struct MetaballField::Impl {
 
   template <class Groups>
   NearGroups near(std::size_t part, const Groups& groups) const {
-    return {parts[part].blocks, groups(part), settings.radius, per_square};
+    return {*parts[part].blocks, groups(part), settings.radius, per_square};
   }
   /// Adds a part's jet with its share; its value is without the threshold.
   static void add_share(const Jet& jet, const Part& part, Jet& sum);
@@ -108,7 +112,8 @@ struct MetaballField::Impl {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;
   std::vector<double> shares;
-  std::vector<Part> parts;
+  std::vector<Part> parts;  // those of the particles first, then the walls
+  FieldWalls walls;
 };
 
 }  // namespace flowskin::tracking

@@ -68,8 +68,8 @@ FieldSettings default_field_settings(double spacing, double radius_in_spacings) 
   return settings;
 }
 
-MetaballField::Impl::Impl(std::vector<FieldPart> given, const FieldSettings& field_settings)
-    : settings(field_settings), per_square(1 / (settings.radius * settings.radius)) {
+MetaballField::Impl::Impl(std::vector<FieldPart> given, const FieldSettings& field_settings, FieldWalls given_walls)
+    : settings(field_settings), per_square(1 / (settings.radius * settings.radius)), walls(std::move(given_walls)) {
   const bool some_move =
       std::any_of(given.begin(), given.end(), [](const FieldPart& p) { return !p.velocities.empty(); });
   const bool one_whole = given.size() == 1 && given.front().share == 1;
@@ -80,14 +80,15 @@ MetaballField::Impl::Impl(std::vector<FieldPart> given, const FieldSettings& fie
                                   ", its rate " + std::to_string(part.share_rate) +
                                   "; expected a number that is not negative and a finite one");
     const std::size_t count = part.positions.size();
-    parts.push_back({ParticleBlocks(part.positions, part.velocities, settings.radius), part.share, part.share_rate,
-                     static_cast<int>(positions.size())});
+    parts.push_back({std::make_shared<const ParticleBlocks>(part.positions, part.velocities, settings.radius),
+                     part.share, part.share_rate, static_cast<int>(positions.size())});
     if (some_move && part.velocities.empty()) part.velocities.assign(count, Vec3::Zero());
     if (!one_whole) shares.insert(shares.end(), count, part.share);
     append(std::move(part.positions), positions);
     append(std::move(part.velocities), velocities);
   }
   if (given.empty()) check({}, {}, settings);
+  for (const auto& wall : walls) parts.push_back({wall->blocks(), wall->share(), 0, -1});
 }
 
 void MetaballField::Impl::add_share(const Jet& jet, const Part& part, Jet& sum) {
@@ -99,13 +100,13 @@ void MetaballField::Impl::add_share(const Jet& jet, const Part& part, Jet& sum) 
   sum.value_rate += share * jet.value_rate + share_rate * jet.value;
   sum.gradient_rate += share * jet.gradient_rate + share_rate * jet.gradient;
   sum.hessian_rate += share * jet.hessian_rate + share_rate * jet.hessian;
-  sum.neighbors += jet.neighbors;
+  if (!part.is_wall()) sum.neighbors += jet.neighbors;
 }
 
 MetaballField::MetaballField(std::vector<Vec3> positions, std::vector<Vec3> velocities, FieldSettings settings)
     : MetaballField(single_part(std::move(positions), std::move(velocities)), settings) {}
-MetaballField::MetaballField(std::vector<FieldPart> parts, FieldSettings settings)
-    : impl_(std::make_unique<Impl>(std::move(parts), settings)) {}
+MetaballField::MetaballField(std::vector<FieldPart> parts, FieldSettings settings, FieldWalls walls)
+    : impl_(std::make_unique<Impl>(std::move(parts), settings, std::move(walls))) {}
 MetaballField::~MetaballField() = default;
 MetaballField::MetaballField(MetaballField&&) noexcept = default;
 MetaballField& MetaballField::operator=(MetaballField&&) noexcept = default;
@@ -121,12 +122,13 @@ const FieldSettings& MetaballField::settings() const { return impl_->settings; }
 const std::vector<Vec3>& MetaballField::positions() const { return impl_->positions; }
 const std::vector<Vec3>& MetaballField::velocities() const { return impl_->velocities; }
 const std::vector<double>& MetaballField::shares() const { return impl_->shares; }
+const FieldWalls& MetaballField::walls() const { return impl_->walls; }
 
 void MetaballField::neighbors(const Vec3& x, double radius, std::vector<int>& found) const {
   found.clear();
   if (!(radius > 0)) return;
   impl_->neighbors(x, radius, found,
-                   [&](std::size_t part) { return impl_->parts[part].blocks.near(x, radius, Impl::scratch()); });
+                   [&](std::size_t part) { return impl_->parts[part].blocks->near(x, radius, Impl::scratch()); });
 }
 
 }  // namespace flowskin::tracking

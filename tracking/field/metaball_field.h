@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "tracking/field/field_walls.h"
 #include "tracking/field/jet.h"
 #include "tracking/field/kernel_moments.h"
 #include "tracking/particles.h"
@@ -33,12 +34,12 @@ struct FieldPart {
 /// A field of several parts is the sum of theirs, f = sum_k s_k F_k - T, with the time derivatives f_t = sum_k (s_k
 /// dF_k/dt
 /// + ds_k/dt F_k) and alike for those of gradient and Hessian: with shares 1 - s and s it goes from one field to
-/// another. A snapshot at one time; safe to use from many threads.
+/// another. Walls add the kernels of their points, f = sum_k s_k F_k + sum_w s_w F_w - T. A snapshot at one time; safe to use from many threads.
 class MetaballField {
  public:
   /// `velocities` may be empty: then the time derivatives of the jet are zero.
   MetaballField(std::vector<Vec3> positions, std::vector<Vec3> velocities, FieldSettings settings);
-  explicit MetaballField(std::vector<FieldPart> parts, FieldSettings settings);
+  explicit MetaballField(std::vector<FieldPart> parts, FieldSettings settings, FieldWalls walls = {});
   ~MetaballField();
   MetaballField(MetaballField&&) noexcept;
   MetaballField& operator=(MetaballField&&) noexcept;
@@ -48,7 +49,7 @@ class MetaballField {
   double value(const Vec3& x, Vec3& gradient) const;
   /// All derivatives, in one pass over the neighbours.
   Jet jet(const Vec3& x) const;
-  /// What tells how the field changes when its particles are strained.
+  /// What tells how the field changes when its particles are strained. Walls are not.
   KernelMoments moments(const Vec3& x) const;
 
   const FieldSettings& settings() const;
@@ -58,6 +59,7 @@ class MetaballField {
   const std::vector<Vec3>& velocities() const;
   /// Share of each particle; empty: 1 each.
   const std::vector<double>& shares() const;
+  const FieldWalls& walls() const;
   /// Indices of the particles nearer than `radius` (m), ascending. Clears `found` first.
   void neighbors(const Vec3& x, double radius, std::vector<int>& found) const;
 

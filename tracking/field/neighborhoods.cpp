@@ -101,10 +101,10 @@ void Neighborhoods::fill(const MetaballField& field, const std::vector<Vec3>& po
       high = new_high;
     }
     for (std::size_t part = 0; part < parts.size(); ++part)
-      parts[part].blocks.boxes_near(low, high, reach, boxes[part]);
+      parts[part].blocks->boxes_near(low, high, reach, boxes[part]);
     for (int i = first; i < last; ++i) {
       for (std::size_t part = 0; part < parts.size(); ++part) {
-        parts[part].blocks.append_near(points[order_[i]], reach, boxes[part], chunk.groups);
+        parts[part].blocks->append_near(points[order_[i]], reach, boxes[part], chunk.groups);
         chunk.begin.push_back(static_cast<int>(chunk.groups.size()));
       }
     }

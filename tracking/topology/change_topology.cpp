@@ -286,8 +286,7 @@ void round_small_parts(const TopologySettings& settings, SurfaceMesh& mesh, Topo
 
 TopologyReport change_topology(const MetaballField& field, const Particles& particles, const TopologySettings& settings,
                                SurfaceMesh& mesh, Projection& projection) {
-  const SparseGrid grid =
-      SparseGrid::of_particles(field.positions(), field.settings(), settings.edge_length, field.shares());
+  const SparseGrid grid = SparseGrid::of_field(field, settings.edge_length);
   const FieldGrid fresh{field, grid};
   SurfaceGeometry expected = march(grid);
   put_small_parts_on_roots(fresh, settings.edge_length, expected);

@@ -1,0 +1,57 @@
+#include "tracking/field/field_walls.h"
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "tracking/field/metaball_field.h"
+#include "tracking/field/particle_blocks.h"
+
+namespace flowskin::tracking {
+namespace {
+
+void check(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, double share, double radius) {
+  const auto finite = [](const std::vector<Vec3>& vectors) {
+    return std::all_of(vectors.begin(), vectors.end(), [](const Vec3& v) { return v.allFinite(); });
+  };
+  if (!finite(positions) || !finite(velocities))
+    throw std::invalid_argument("FieldWall: a position or velocity is not finite; check the wall's mesh and motion");
+  if (!velocities.empty() && velocities.size() != positions.size())
+    throw std::invalid_argument("FieldWall: " + std::to_string(velocities.size()) + " velocities for " +
+                                std::to_string(positions.size()) + " points; expected as many, or none");
+  if (!(std::isfinite(share) && share >= 0 && std::isfinite(radius) && radius > 0))
+    throw std::invalid_argument("FieldWall: share is " + std::to_string(share) + ", radius " + std::to_string(radius) +
+                                "; expected a number that is not negative and a positive length (m)");
+}
+
+}  // namespace
+
+FieldWall::FieldWall(std::vector<Vec3> positions, std::vector<Vec3> velocities, double share, double radius)
+    : positions_(std::move(positions)), share_(share) {
+  check(positions_, velocities, share, radius);
+  blocks_ = std::make_shared<const ParticleBlocks>(positions_, velocities, radius);
+}
+FieldWall::~FieldWall() = default;
+
+void FieldWall::near(const Vec3& low, const Vec3& high, double reach, std::vector<Vec3>& found) const {
+  found.clear();
+  thread_local std::vector<int> boxes;
+  blocks_->boxes_near(low, high, reach, boxes);
+  for (const int box : boxes) {
+    for (int group = box * lane_count; group < (box + 1) * lane_count; ++group) {
+      for (int lane = 0; lane < lane_count; ++lane) {
+        const int point = blocks_->particle(group, lane);
+        if (point >= 0) found.push_back(positions_[point]);
+      }
+    }
+  }
+}
+
+double share_of_wall_point(const FieldSettings& settings, double area, double share_of_threshold) {
+  // Integral of (1 - r^2 / sigma^2)^3 over a plane through the centre.
+  const double plane = std::numbers::pi / 4 * settings.radius * settings.radius;
+  return share_of_threshold * settings.threshold / (settings.weight * plane / area);
+}
+
+}  // namespace flowskin::tracking

@@ -1,0 +1,53 @@
+// Walls as a metaball field meets them: points on them that make it stronger beside them.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "tracking/particles.h"
+
+namespace flowskin::tracking {
+
+class ParticleBlocks;
+struct FieldSettings;
+
+/// Points on a wall that add their kernels to the field of the fluid beside it. The fluid ends at the wall, and its
+/// field with it: a film of one layer of particles hardly reaches the threshold, so its surface tears where the fluid
+/// does not. The points stand for what the wall leaves out. They are no particles: nobody meets them as neighbours, and
+/// no velocity or material is read from them. The surface lies up to half a spacing within the wall, where nobody sees
+/// it.
+class FieldWall {
+ public:
+  /// @param velocities m/s; may be empty: the wall stands still
+  /// @param share factor of the points' weights, see share_of_wall_point
+  /// @param radius effective radius of the field (m)
+  /// @throws std::invalid_argument where a number is not finite, or there is another number of velocities than points
+  FieldWall(std::vector<Vec3> positions, std::vector<Vec3> velocities, double share, double radius);
+  ~FieldWall();
+
+  const std::vector<Vec3>& positions() const { return positions_; }  ///< m
+  double share() const { return share_; }
+  /// All points nearer than `reach` (m) to the box from `low` to `high`, and some others. Clears `found` first.
+  void near(const Vec3& low, const Vec3& high, double reach, std::vector<Vec3>& found) const;
+
+  /// Internal to tracking/field.
+  const std::shared_ptr<const ParticleBlocks>& blocks() const { return blocks_; }
+
+ private:
+  std::vector<Vec3> positions_;
+  double share_;
+  std::shared_ptr<const ParticleBlocks> blocks_;
+};
+
+/// All walls at one time.
+using FieldWalls = std::vector<std::shared_ptr<const FieldWall>>;
+/// The walls at a time (s). Empty: there are none.
+using WallsAt = std::function<FieldWalls(double)>;
+
+/// The share that makes the field of points on a bare plane `share_of_threshold` times the threshold there. Below 1/2
+/// neither a wall nor the gap between two makes a surface of its own.
+/// @param area that a point stands for (m^2)
+double share_of_wall_point(const FieldSettings& settings, double area, double share_of_threshold);
+
+}  // namespace flowskin::tracking
