@@ -159,7 +159,8 @@ class TrackerImpl {
 
   void rebuild_field() {
     field_.reset();
-    if (!particles_.positions.empty()) field_.emplace(field_of(particles_, settings_.field, settings_.walls_at(particles_.time)));
+    if (!particles_.positions.empty())
+      field_.emplace(field_of(particles_, settings_.field, settings_.walls_at(particles_.time)));
   }
 
   SurfaceGeometry extract_raw() const { return extract_raw_surface(*field_, settings_.edge_length); }
@@ -214,8 +215,7 @@ class TrackerImpl {
     // The velocities of the last call hold at the start, unless particles come or go.
     std::vector<Vec3> first;
     if (paths.blended()) {
-      if (duration != 0)
-        field_.emplace(field_at(paths.begin_time()));  // the same, but for its rates
+      if (duration != 0) field_.emplace(field_at(paths.begin_time()));  // the same, but for its rates
     } else if (velocities_known_ && particles_.ids == particles.ids) {
       first = mesh_.velocities;
     }

@@ -1,0 +1,57 @@
+// The walls of scene files as the field meets them.
+#include "tools/pipeline/field_walls.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes/scene_file.h"
+#include "tools/pipeline/tracker_bridge.h"
+
+namespace flowskin::tools {
+namespace {
+
+scenes::Scene scene_with(const std::string& boundaries, const std::string& tracking = "{}") {
+  const std::string text = R"({"frames": 2, "particles": {"spacing": 0.05}, "fluid": {"viscosity": 0.01},
+    "bodies": [{"shape": "ball", "center": [0, 0.5, 0], "radius": 0.2}], "tracking": )" +
+                           tracking + R"(, "boundaries": )" + boundaries + "}";
+  return scenes::parse_scene(text, "test", FLOWSKIN_SOURCE_DIR "/scenes", scene_vocabulary());
+}
+
+tracking::FieldWalls walls_at(const scenes::Scene& scene, double time) {
+  const tracking::TrackerSettings settings = tracker_settings(scene);
+  return settings.walls_at(time);
+}
+
+TEST(FieldWalls, NoneWithoutWallsOrShare) {
+  EXPECT_TRUE(walls_at(scene_with("[]"), 0).empty());
+  EXPECT_TRUE(walls_at(scene_with(R"([{"file": "meshes/stairs.obj"}])", R"({"wall_share": 0})"), 0).empty());
+  EXPECT_FALSE(walls_at(scene_with(R"([{"file": "meshes/stairs.obj"}])"), 0).empty());
+}
+
+TEST(FieldWalls, FacesInCommonCountOnce) {
+  const auto once = walls_at(scene_with(R"([{"file": "meshes/stairs.obj"}])"), 0);
+  const auto twice = walls_at(scene_with(R"([{"file": "meshes/stairs.obj"}, {"file": "meshes/stairs.obj"}])"), 0);
+  ASSERT_EQ(once.size(), 1U);
+  ASSERT_EQ(twice.size(), 1U);
+  // A few more fill what the sampler takes for gaps.
+  EXPECT_NEAR(double(twice.front()->positions().size()) / double(once.front()->positions().size()), 1, 0.03);
+  // About one point a spacing squared: the flight of stairs has 11.688 m^2.
+  const double expected = 11.688 / (0.05 * 0.05);
+  EXPECT_NEAR(double(once.front()->positions().size()) / expected, 1, 0.1);
+}
+
+TEST(FieldWalls, MoveByTheirKeyframes) {
+  const scenes::Scene scene =
+      scene_with(R"([{"file": "meshes/paddle.obj", "keyframes": [{"time": 0}, {"time": 2, "translate": [0, 1, 0]}]}])");
+  const auto early = walls_at(scene, 0), later = walls_at(scene, 1);
+  ASSERT_EQ(early.size(), 1U);
+  ASSERT_EQ(later.size(), 1U);
+  const auto &from = early.front()->positions(), &to = later.front()->positions();
+  ASSERT_EQ(from.size(), to.size());
+  ASSERT_GT(from.size(), 50U);
+  for (std::size_t i = 0; i < from.size(); ++i) EXPECT_LE((to[i] - from[i] - Vec3(0, 0.5, 0)).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace flowskin::tools
