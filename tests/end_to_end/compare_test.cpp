@@ -83,7 +83,8 @@ TEST_F(CompareRun, ErrorsBeginAtZeroAndTellTheMethodsApart) {
     EXPECT_EQ(table.number("vertices_kept", first), 1);
   }
   // The ball flies off: all that `normal` sees of it is the third of the motion that is along the normal.
-  EXPECT_NEAR(table.number("tangential_error", 0), 1, 1e-3);
+  // It goes along the normals of the particles' field; the surface over the wall half a spacing below is bent a little.
+  EXPECT_NEAR(table.number("tangential_error", 0), 1, 5e-3);
   EXPECT_NEAR(table.number("velocity_error", 0), 0.816, 0.02);
   EXPECT_LT(table.number("velocity_error", 1), 1e-6);
   EXPECT_GT(table.number("texture_median", 8), 5 * table.number("texture_median", 9));

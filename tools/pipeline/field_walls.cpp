@@ -18,12 +18,9 @@ struct Mover {
 
   std::shared_ptr<const tracking::FieldWall> at(double time, double share, double radius) const {
     const sph::Pose pose = motion.pose(time);
-    std::vector<Vec3> positions, velocities;
-    for (const Vec3& point : points) {
-      positions.push_back(pose.place(point));
-      velocities.push_back(pose.velocity_at(positions.back()));
-    }
-    return std::make_shared<const tracking::FieldWall>(std::move(positions), std::move(velocities), share, radius);
+    std::vector<Vec3> positions;
+    for (const Vec3& point : points) positions.push_back(pose.place(point));
+    return std::make_shared<const tracking::FieldWall>(std::move(positions), share, radius);
   }
 };
 
@@ -51,8 +48,8 @@ tracking::WallsAt field_walls(const scenes::Scene& scene, const tracking::FieldS
   }
   tracking::FieldWalls rest;
   if (!resting.triangles.empty()) {
-    rest.push_back(std::make_shared<const tracking::FieldWall>(sph::sample_surface(resting, spacing),
-                                                               std::vector<Vec3>{}, share, settings.radius));
+    rest.push_back(
+        std::make_shared<const tracking::FieldWall>(sph::sample_surface(resting, spacing), share, settings.radius));
   }
   return [rest, movers, share, radius = settings.radius](double time) {
     tracking::FieldWalls walls = rest;

@@ -19,9 +19,7 @@ struct MetaballField::Impl {
   struct Part {
     std::shared_ptr<const ParticleBlocks> blocks;
     double share, share_rate;
-    int first;  ///< Number of its first particle; -1: a wall, whose points are none.
-
-    bool is_wall() const { return first < 0; }
+    int first;  ///< Number of its first particle; of no meaning for a wall.
   };
 
   Impl(std::vector<FieldPart> given, const FieldSettings& field_settings, FieldWalls given_walls);
@@ -51,12 +49,12 @@ struct MetaballField::Impl {
 
   template <class Groups>
   Jet jet(const Vec3& x, const Groups& groups) const {
-    if (shares.empty() && parts.size() == 1 && parts.front().share_rate == 0)
+    if (shares.empty() && particle_parts == 1 && parts.front().share_rate == 0)
       return jet_of(near(0, groups), x, settings);
     FieldSettings without_threshold = settings;
     without_threshold.threshold = 0;
     Jet sum;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
+    for (std::size_t k = 0; k < particle_parts; ++k) {
       if (parts[k].share > 0 || parts[k].share_rate != 0)
         add_share(jet_of(near(k, groups), x, without_threshold), parts[k], sum);
     }
@@ -67,8 +65,8 @@ struct MetaballField::Impl {
   template <class Groups>
   KernelMoments moments(const Vec3& x, const Groups& groups) const {
     KernelMoments sum;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      if (parts[k].share > 0 && !parts[k].is_wall()) add_moments(near(k, groups), x, parts[k].share, sum);
+    for (std::size_t k = 0; k < particle_parts; ++k) {
+      if (parts[k].share > 0) add_moments(near(k, groups), x, parts[k].share, sum);
     }
     return sum;
   }
@@ -76,8 +74,7 @@ struct MetaballField::Impl {
   template <class Groups>
   void neighbors(const Vec3& x, double radius, std::vector<int>& found, const Groups& groups) const {
     found.clear();
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      if (parts[k].is_wall()) continue;
+    for (std::size_t k = 0; k < particle_parts; ++k) {
       for (const int group : groups(k)) {
         for (int lane = 0; lane < lane_count; ++lane) {
           const int in_part = parts[k].blocks->particle(group, lane);
@@ -112,7 +109,8 @@ struct MetaballField::Impl {
   std::vector<Vec3> positions;
   std::vector<Vec3> velocities;
   std::vector<double> shares;
-  std::vector<Part> parts;  // those of the particles first, then the walls
+  std::vector<Part> parts;         // those of the particles first, then the walls
+  std::size_t particle_parts = 0;  // so many
   FieldWalls walls;
 };
 

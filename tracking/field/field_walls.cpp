@@ -11,15 +11,9 @@
 namespace flowskin::tracking {
 namespace {
 
-void check(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, double share, double radius) {
-  const auto finite = [](const std::vector<Vec3>& vectors) {
-    return std::all_of(vectors.begin(), vectors.end(), [](const Vec3& v) { return v.allFinite(); });
-  };
-  if (!finite(positions) || !finite(velocities))
-    throw std::invalid_argument("FieldWall: a position or velocity is not finite; check the wall's mesh and motion");
-  if (!velocities.empty() && velocities.size() != positions.size())
-    throw std::invalid_argument("FieldWall: " + std::to_string(velocities.size()) + " velocities for " +
-                                std::to_string(positions.size()) + " points; expected as many, or none");
+void check(const std::vector<Vec3>& positions, double share, double radius) {
+  if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& x) { return x.allFinite(); }))
+    throw std::invalid_argument("FieldWall: a position is not finite; check the wall's mesh and motion");
   if (!(std::isfinite(share) && share >= 0 && std::isfinite(radius) && radius > 0))
     throw std::invalid_argument("FieldWall: share is " + std::to_string(share) + ", radius " + std::to_string(radius) +
                                 "; expected a number that is not negative and a positive length (m)");
@@ -27,10 +21,10 @@ void check(const std::vector<Vec3>& positions, const std::vector<Vec3>& velociti
 
 }  // namespace
 
-FieldWall::FieldWall(std::vector<Vec3> positions, std::vector<Vec3> velocities, double share, double radius)
+FieldWall::FieldWall(std::vector<Vec3> positions, double share, double radius)
     : positions_(std::move(positions)), share_(share) {
-  check(positions_, velocities, share, radius);
-  blocks_ = std::make_shared<const ParticleBlocks>(positions_, velocities, radius);
+  check(positions_, share, radius);
+  blocks_ = std::make_shared<const ParticleBlocks>(positions_, std::vector<Vec3>{}, radius);
 }
 FieldWall::~FieldWall() = default;
 

@@ -19,11 +19,10 @@ struct FieldSettings;
 /// it.
 class FieldWall {
  public:
-  /// @param velocities m/s; may be empty: the wall stands still
   /// @param share factor of the points' weights, see share_of_wall_point
   /// @param radius effective radius of the field (m)
-  /// @throws std::invalid_argument where a number is not finite, or there is another number of velocities than points
-  FieldWall(std::vector<Vec3> positions, std::vector<Vec3> velocities, double share, double radius);
+  /// @throws std::invalid_argument where a number is not finite, the share negative, or the radius not positive
+  FieldWall(std::vector<Vec3> positions, double share, double radius);
   ~FieldWall();
 
   const std::vector<Vec3>& positions() const { return positions_; }  ///< m

@@ -88,7 +88,8 @@ MetaballField::Impl::Impl(std::vector<FieldPart> given, const FieldSettings& fie
     append(std::move(part.velocities), velocities);
   }
   if (given.empty()) check({}, {}, settings);
-  for (const auto& wall : walls) parts.push_back({wall->blocks(), wall->share(), 0, -1});
+  particle_parts = parts.size();
+  for (const auto& wall : walls) parts.push_back({wall->blocks(), wall->share(), 0, 0});
 }
 
 void MetaballField::Impl::add_share(const Jet& jet, const Part& part, Jet& sum) {
@@ -100,7 +101,7 @@ void MetaballField::Impl::add_share(const Jet& jet, const Part& part, Jet& sum) 
   sum.value_rate += share * jet.value_rate + share_rate * jet.value;
   sum.gradient_rate += share * jet.gradient_rate + share_rate * jet.gradient;
   sum.hessian_rate += share * jet.hessian_rate + share_rate * jet.hessian;
-  if (!part.is_wall()) sum.neighbors += jet.neighbors;
+  sum.neighbors += jet.neighbors;
 }
 
 MetaballField::MetaballField(std::vector<Vec3> positions, std::vector<Vec3> velocities, FieldSettings settings)

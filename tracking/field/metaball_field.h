@@ -34,7 +34,9 @@ struct FieldPart {
 /// A field of several parts is the sum of theirs, f = sum_k s_k F_k - T, with the time derivatives f_t = sum_k (s_k
 /// dF_k/dt
 /// + ds_k/dt F_k) and alike for those of gradient and Hessian: with shares 1 - s and s it goes from one field to
-/// another. Walls add the kernels of their points, f = sum_k s_k F_k + sum_w s_w F_w - T. A snapshot at one time; safe to use from many threads.
+/// another. Walls add the kernels of their points to the value and its gradient, f = sum_k s_k F_k + sum_w s_w F_w - T:
+/// they say where the surface is. How it moves is told by the particles: jets and moments are theirs alone. A snapshot
+/// at one time; safe to use from many threads.
 class MetaballField {
  public:
   /// `velocities` may be empty: then the time derivatives of the jet are zero.
@@ -47,9 +49,9 @@ class MetaballField {
   double value(const Vec3& x) const;
   /// Value and gradient.
   double value(const Vec3& x, Vec3& gradient) const;
-  /// All derivatives, in one pass over the neighbours.
+  /// All derivatives of the particles' part of the field, in one pass over the neighbours.
   Jet jet(const Vec3& x) const;
-  /// What tells how the field changes when its particles are strained. Walls are not.
+  /// What tells how that part changes when its particles are strained.
   KernelMoments moments(const Vec3& x) const;
 
   const FieldSettings& settings() const;

@@ -15,9 +15,9 @@ class LocalField {
   double value(const Vec3& x) const;
   /// Value and gradient.
   double value(const Vec3& x, Vec3& gradient) const;
-  /// All derivatives, in one pass over the neighbours.
+  /// All derivatives of the particles' part of the field, in one pass over the neighbours.
   Jet jet(const Vec3& x) const;
-  /// What tells how the field changes when its particles are strained.
+  /// What tells how that part changes when its particles are strained.
   KernelMoments moments(const Vec3& x) const;
   /// Indices of the particles nearer than the effective radius, ascending. Clears `found` first.
   void neighbors(const Vec3& x, std::vector<int>& found) const;
