@@ -109,8 +109,10 @@ class Run {
       compare(mesh, fresh, measures);
       if (measures.volume_error > limit::volume) compare_with_finer(field, fresh, measures);
       measures.field_distance = tracking::largest_distance(field, mesh.positions) / field_settings.radius;
-      if (!now.rest_positions.empty())
+      if (!now.rest_positions.empty()) {
         measures.material_drift = quantile(tracking::material_drift(mesh, field, now), 0.5) / result_.spacing;
+        measures.material_scatter = quantile(tracking::material_scatter(field, now), 0.5) / result_.spacing;
+      }
     }
     measure_ids(mesh, measures);
   }

@@ -63,12 +63,13 @@ struct FrameMeasures {
   double hausdorff = 0;       ///< In target edge lengths.
   double field_distance = 0;  ///< Largest |f| / |grad f| at a vertex, in effective radii.
   double narrow_triangles = 0, odd_edges = 0;
-  double ids_kept = 1;        ///< Of the vertices of the frame before.
-  bool change = false;        ///< The fluid's topology is not that of the frame before, small parts included.
-  double material_drift = 0;  ///< Median, in spacings; 0 where the source knows no material.
-  int regions = 0, born = 0;  ///< Replaced, and their vertices, since the frame before.
-  int reextractions = 0;      ///< By the guard, since the frame before.
-  std::string reason;         ///< Of the last of them.
+  double ids_kept = 1;          ///< Of the vertices of the frame before.
+  bool change = false;          ///< The fluid's topology is not that of the frame before, small parts included.
+  double material_drift = 0;    ///< Median, in spacings; 0 where the source knows no material.
+  double material_scatter = 0;  ///< The same of the particles' own material: no smooth texture drifts less.
+  int regions = 0, born = 0;    ///< Replaced, and their vertices, since the frame before.
+  int reextractions = 0;        ///< By the guard, since the frame before.
+  std::string reason;           ///< Of the last of them.
 };
 
 /// Of a motion that brings every particle back to its start: the last surface beside the first.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string_view>
 
 #include "surfaces/surface_checks.h"
@@ -49,6 +50,8 @@ const std::vector<Line>& lines() {
       {"re-extractions by the guard", "guard", 0, [](const auto& f) { return double(f.reextractions); }, "{:.0f}"},
       {"median material drift at the end in spacings", "drift", limit::material_drift,
        [](const auto& f) { return f.material_drift; }, "{:.2f}", true},
+      {"median scatter of the particles' material at the end in spacings", "scatter",
+       std::numeric_limits<double>::infinity(), [](const auto& f) { return f.material_scatter; }, "{:.2f}", true},
   };
   return all;
 }

@@ -7,9 +7,12 @@
 #include <cmath>
 #include <set>
 
+#include "tests/tracking/field_test_bodies.h"
 #include "tests/tracking/mesh_test_shapes.h"
+#include "tracking/advection/particle_paths.h"
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/extract_surface.h"
+#include "tracking/quantile.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -171,6 +174,30 @@ TEST(Material, IdsStayWithVerticesThatStay) {
   }
   EXPECT_GT(kept, 0);
   EXPECT_LT(kept, static_cast<int>(changed.ids.size()));
+}
+
+// Smooth motion scatters nothing; noise of the rest positions comes back, a little larger by that of the neighbours.
+TEST(MaterialScatter, IsTheNoiseOfTheRestPositions) {
+  Particles particles = test::particles_at(ball_of_particles(4.2));
+  Mat3 gradient;
+  gradient << 0.3, 0.1, 0, -0.2, 0.4, 0.1, 0, 0.3, -0.1;
+  for (Vec3& rest : particles.rest_positions) rest = gradient * rest + Vec3(5, -2, 1);
+  const MetaballField field = field_of(particles, kField);
+  const std::vector<double> smooth = material_scatter(field, particles);
+  EXPECT_EQ(smooth.size(), particles.ids.size());
+  EXPECT_LT(*std::max_element(smooth.begin(), smooth.end()), 1e-4);
+  EXPECT_LE(material_scatter(field, particles, 50).size(), 100U);
+
+  test::Random random(9);
+  std::vector<double> lengths;
+  for (Vec3& rest : particles.rest_positions) {
+    const Vec3 noise = 0.5 * random.vector();
+    lengths.push_back(noise.norm());
+    rest += noise;
+  }
+  const double noise = quantile(lengths, 0.5), scatter = quantile(material_scatter(field, particles), 0.5);
+  EXPECT_GT(scatter, noise);
+  EXPECT_LT(scatter, 1.3 * noise);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 // magic | format version (u32) | header and state | length of all before (u64) | CRC-32 of all before (u32) | end
 constexpr std::string_view kMagic = "flowskin checkpoint\n";
 constexpr std::string_view kEnd = "the end\n";
-constexpr std::uint32_t kFormatVersion = 3;
+constexpr std::uint32_t kFormatVersion = 4;
 constexpr std::size_t kHeadSize = kMagic.size() + sizeof(std::uint32_t);
 constexpr std::size_t kTailSize = sizeof(std::uint64_t) + sizeof(std::uint32_t) + kEnd.size();
 constexpr std::size_t kKept = 2;

@@ -64,8 +64,9 @@ void describe_surface(const tracking::SurfaceMesh& mesh, const tracking::Particl
   const tracking::MetaballField field =
       tracking::field_of(particles, settings.field, settings.walls_at(particles.time));
   describe_shape(mesh, tracking::extract_raw_surface(field, settings.edge_length), settings.edge_length, row);
-  if (!mesh.positions.empty() && !particles.rest_positions.empty())
-    row.texture_drift = quantile(tracking::material_drift(mesh, field, particles), 0.5);
+  if (mesh.positions.empty() || particles.rest_positions.empty()) return;
+  row.texture_drift = quantile(tracking::material_drift(mesh, field, particles), 0.5);
+  row.material_scatter = quantile(tracking::material_scatter(field, particles), 0.5);
 }
 
 }  // namespace flowskin::tools

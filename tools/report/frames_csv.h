@@ -26,8 +26,9 @@ struct FrameRow {
   double smallest_angle = 0;                        ///< degrees
   double good_angles = 0, good_edges = 0;           ///< shares: above 10 degrees; 0.5 to 1.5 of the edge length
   double stretch_median = 0, stretch_p99 = 0;       ///< larger singular value of the map from rest to present
-  double overstretched = 0;  ///< share of the area whose texture, as shown, is stretched past the limit
-  double texture_drift = 0;  ///< m: median distance between the rest positions of surface and particles beneath
+  double overstretched = 0;     ///< share of the area whose texture, as shown, is stretched past the limit
+  double texture_drift = 0;     ///< m: median distance between the rest positions of surface and particles beneath
+  double material_scatter = 0;  ///< m: the same between a particle's and that of its neighbours: the drift's floor
   int substeps = 0;
   int splits = 0, collapses = 0, flips = 0;  ///< of the remeshing
   int regions = 0;                           ///< of the surface, replaced where it no longer fitted
@@ -75,6 +76,7 @@ void for_each_frame_column(Row& row, Visit visit) {
   visit("stretch_p99", row.stretch_p99);
   visit("overstretched", row.overstretched);
   visit("texture_drift", row.texture_drift);
+  visit("material_scatter", row.material_scatter);
   visit("substeps", row.substeps);
   visit("splits", row.splits);
   visit("collapses", row.collapses);

@@ -125,6 +125,25 @@ std::vector<double> material_drift(const SurfaceMesh& mesh, const MetaballField&
   return drift;
 }
 
+std::vector<double> material_scatter(const MetaballField& field, const Particles& particles, std::size_t most) {
+  const std::size_t count = particles.rest_positions.size(), step = std::max<std::size_t>(1, count / most);
+  std::vector<double> scatter(count / step, std::numeric_limits<double>::quiet_NaN());
+  const double radius = field.settings().radius;
+  const auto displacement = [&](int p) { return Vec3(particles.rest_positions[p] - particles.positions[p]); };
+#pragma omp parallel for schedule(dynamic, 16)
+  for (std::ptrdiff_t i = 0; i < std::ssize(scatter); ++i) {
+    const auto particle = static_cast<int>(static_cast<std::size_t>(i) * step);
+    const Vec3& x = particles.positions[particle];
+    std::vector<int> others;
+    field.neighbors(x, radius, others);
+    std::erase_if(others, [&](int p) { return p == particle || p >= static_cast<int>(count); });
+    const DisplacementFit fit(field, displacement, x, radius, others);
+    if (fit.is_known()) scatter[i] = (fit.at(x) - displacement(particle)).norm();
+  }
+  std::erase_if(scatter, [](double distance) { return std::isnan(distance); });
+  return scatter;
+}
+
 int limit_slip(double limit, const MetaballField& field, const Particles& particles, SurfaceMesh& mesh) {
   std::vector<char> held(mesh.positions.size());
 #pragma omp parallel for schedule(dynamic, 256)

@@ -28,6 +28,12 @@ Vec3 material_place_at(const MetaballField& field, const std::vector<Vec3>& part
 /// texture has drifted off its material.
 std::vector<double> material_drift(const SurfaceMesh& mesh, const MetaballField& field, const Particles& particles);
 
+/// How far the material of a particle lies from where that of its neighbours puts it (m): the distance between its rest
+/// position and the moving-least-squares rest position of the others at its place, for at most `most` particles evenly
+/// spread over their ids. 0 where the motion is smooth; where particles have mixed, no texture that is smooth can be
+/// nearer to them than this. A particle without neighbours counts for nothing.
+std::vector<double> material_scatter(const MetaballField& field, const Particles& particles, std::size_t most = 1000);
+
 /// Holds the rest positions of a mesh within `limit` (m) of those of the particles beneath: farther ones are pulled
 /// back to that distance. A surface that is carried by the best of velocities still slips off its particles in time,
 /// and where fluid comes from an inlet, or up from inside, new surface would go on with the material of its neighbours.
