@@ -128,7 +128,7 @@ std::vector<std::string> methods_to_compare(const std::string& list) {
 Comparison::Comparison(const scenes::Scene& scene, const RunDirectory& directory,
                        const std::vector<std::string>& methods, const tracking::Tracker& scene_tracker,
                        const tracking::Particles& start, StageClock& clock)
-    : scene_(scene), directory_(directory), truth_(scene, scene_tracker.settings().field, start), clock_(clock) {
+    : scene_(scene), directory_(directory), truth_(scene, scene_tracker.settings(), start), clock_(clock) {
   for (const std::string& method : methods) {
     Entry& entry = entries_.emplace_back(Entry{method, nullptr, &scene_tracker, {}});
     if (method == scene_tracker.settings().velocity) continue;

@@ -16,8 +16,10 @@ int steps_for(double ratio) { return static_cast<int>(std::clamp(std::ceil(ratio
 
 }  // namespace
 
-GroundTruth::GroundTruth(const scenes::Scene& scene, const tracking::FieldSettings& field, tracking::Particles start)
-    : field_(field), most_depth_(kMostDepthInSpacings * scene.particles.spacing), particles_(std::move(start)) {
+GroundTruth::GroundTruth(const scenes::Scene& scene, tracking::TrackerSettings settings, tracking::Particles start)
+    : settings_(std::move(settings)),
+      most_depth_(kMostDepthInSpacings * scene.particles.spacing),
+      particles_(std::move(start)) {
   if (scene.particles.source == scenes::ParticlesSpec::Source::prescribed) motion_.emplace(scene.particles.motion);
 }
 
@@ -27,7 +29,9 @@ void GroundTruth::start_markers(const tracking::SurfaceMesh& mesh) {
   tracking::settle_markers(field(), most_depth_, markers_);
 }
 
-tracking::MetaballField GroundTruth::field() const { return {particles_.positions, particles_.velocities, field_}; }
+tracking::MetaballField GroundTruth::field() const {
+  return tracking::field_of(particles_, settings_.field, settings_.walls_at(particles_.time));
+}
 
 tracking::FlowAt GroundTruth::exact_flow() const {
   return [this](double time) -> tracking::Flow {
@@ -50,8 +54,8 @@ void GroundTruth::advance(const tracking::Particles& particles) {
     if (motion_) {
       tracking::advect_markers(exact_flow(), particles.time, exact_steps(particles.time - particles_.time), markers_);
     } else {
-      tracking::advect_markers(tracking::particle_flow(paths, field_), particles.time,
-                               steps_for(paths.longest_path() / (kStepInRadii * field_.radius)), markers_);
+      tracking::advect_markers(tracking::particle_flow(paths, settings_.field), particles.time,
+                               steps_for(paths.longest_path() / (kStepInRadii * settings_.field.radius)), markers_);
     }
   }
   particles_ = particles;

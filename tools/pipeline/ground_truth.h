@@ -18,7 +18,7 @@ class GroundTruth {
   static constexpr double kMostDepthInSpacings = 1;  ///< A marker that is farther from f = 0 has left the surface.
 
   /// `start` are the particles at the start of the run.
-  GroundTruth(const scenes::Scene& scene, const tracking::FieldSettings& field, tracking::Particles start);
+  GroundTruth(const scenes::Scene& scene, tracking::TrackerSettings settings, tracking::Particles start);
 
   /// Puts markers onto the mesh, where there are none yet. Call it with the mesh at the present time.
   void start_markers(const tracking::SurfaceMesh& mesh);
@@ -45,7 +45,7 @@ class GroundTruth {
   int exact_steps(double duration) const;
 
   std::optional<scenes::Motion> motion_;  // prescribed
-  tracking::FieldSettings field_;
+  tracking::TrackerSettings settings_;
   double most_depth_;
   tracking::Particles particles_;  // at the present time
   tracking::Markers markers_;
