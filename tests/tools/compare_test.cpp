@@ -151,7 +151,7 @@ tracking::Markers markers_of_ball(bool exact) {
   const tracking::Particles start = to_particles(source->state());
   const tracking::Tracker tracker(tracker_settings(scene), start);
   if (!exact) scene.particles.source = scenes::ParticlesSpec::Source::simulation;
-  GroundTruth truth(scene, tracker.settings().field, start);
+  GroundTruth truth(scene, tracker.settings(), start);
   truth.start_markers(tracker.mesh());
   for (int step = 1; step <= 10; ++step) {
     source->advance_to(0.05 * step);
