@@ -53,7 +53,7 @@ void check_body(const Scene& scene, std::size_t i, Checker& checker) {
   const std::string smaller = "must be smaller than max along every axis";
   const std::string too_many =
       fmt::format("makes the body more than {:.0g} particles at particles.spacing {} m; make that larger",
-                  max_particles, write_number(scene.particles.spacing));
+                  max_particles, number_text(scene.particles.spacing));
   if (body.shape == sph::FluidBody::Shape::block) {
     checker.require(is_ordered(body.block), "bodies", i, "min", smaller);
     checker.require((body.block.max - body.block.min).prod() / cell <= max_particles, "bodies", i, "max", too_many);
@@ -99,7 +99,7 @@ void check_periods(const Scene& scene, Checker& checker) {
     checker.require(!solver.periodic[a] || period >= shortest * (1 - 1e-9), "simulation.periodic",
                     fmt::format("is true for {}, where simulation.domain is {} m long; expected at least twice the "
                                 "support radius, {} m",
-                                "xyz"[a], write_number(period), write_number(shortest)));
+                                "xyz"[a], number_text(period), number_text(shortest)));
   }
   checker.require(!any || !scene.tracking.enabled, "simulation.periodic",
                   "leaves the surface open where the fluid leaves the domain, and surfaces are not tracked across "

@@ -16,10 +16,10 @@ std::string range_in_words(const Range& range) {
   const bool bounded_above = range.max < 1000;  // Larger limits only catch slips.
   if (!bounded_above) {
     if (range.min <= -max_coordinate) return "number";
-    return fmt::format("number {} {}", range.open_min ? ">" : ">=", write_number(range.min));
+    return fmt::format("number {} {}", range.open_min ? ">" : ">=", number_text(range.min));
   }
-  return fmt::format("number {} {}{} {}", range.open_min ? "above" : "from", write_number(range.min),
-                     range.open_min ? ", at most" : " to", write_number(range.max));
+  return fmt::format("number {} {}{} {}", range.open_min ? "above" : "from", number_text(range.min),
+                     range.open_min ? ", at most" : " to", number_text(range.max));
 }
 
 /// The number of a node; `place` is set in lists, where the culprit is worth pointing at.
@@ -28,7 +28,7 @@ double checked_number(const JsonNode& node, const Range& range, std::size_t plac
   const double value = node.number;
   const bool inside = (range.open_min ? value > range.min : value >= range.min) && value <= range.max;
   if (!inside) {
-    const std::string hint = value > range.max ? "; the largest allowed is " + write_number(range.max) : "";
+    const std::string hint = value > range.max ? "; the largest allowed is " + number_text(range.max) : "";
     throw Mismatch{describe(node), hint, place};
   }
   return value;
@@ -47,20 +47,14 @@ Triple checked_triple(const JsonNode& node, const Range& range) {
 
 template <class Triple>
 std::string write_triple(const Triple& t) {
-  return fmt::format("[{}, {}, {}]", write_number(t[0]), write_number(t[1]), write_number(t[2]));
+  return fmt::format("[{}, {}, {}]", number_text(t[0]), number_text(t[1]), number_text(t[2]));
 }
 
 }  // namespace
 
-std::string write_number(double value) {
-  std::array<char, 40> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
-}
-
 Kind<double> number(Range range) {
   return {range_in_words(range), [range](const JsonNode& node) { return checked_number(node, range); },
-          [](const double& value, int) { return write_number(value); }};
+          [](const double& value, int) { return number_text(value); }};
 }
 
 Kind<int> integer(int min, int max) {

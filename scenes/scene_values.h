@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/number_text.h"
 #include "scenes/json_text.h"
 #include "sph/geometry/triangle_mesh.h"
 
@@ -41,9 +42,6 @@ inline Range above(double min, double max) { return {min, max, true}; }
 
 /// Coordinates and other signed quantities may be this large: far beyond any scene, small enough for squares and cubes.
 constexpr double max_coordinate = 1e6;
-
-/// A number as the shortest JSON text that reads back exactly, whatever the locale.
-std::string write_number(double value);
 
 Kind<double> number(Range range);
 Kind<int> integer(int min, int max);

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <vector>
 
+#include "common/parallel.h"
 #include "sph/forces/pair_forces.h"
-#include "sph/parallel.h"
 #include "sph/particle_pack.h"
 #include "sph/solver.h"
 

@@ -1,11 +1,11 @@
 #include "sph/setup_checks.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "common/number_text.h"
 #include "sph/bodies/emitter_outlet.h"
 #include "sph/bodies/fluid_sinks.h"
 #include "sph/forces/surface_tension.h"
@@ -19,14 +19,10 @@ namespace {
 constexpr double implicit_step_cost = 4;
 constexpr double recommended_skin = 0.3;  // in spacings; measured in tests/benchmarks/sph_benchmark.cpp
 
-std::string number(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 void require(bool holds, const char* setting, double value, const char* expected) {
   if (!holds) {
-    throw SettingsError(std::string("solver setting ") + setting + " = " + number(value) + ": expected " + expected);
+    throw SettingsError(std::string("solver setting ") + setting + " = " + number_text(value) + ": expected " +
+                        expected);
   }
 }
 
@@ -69,9 +65,9 @@ void check_domain(const SolverSettings& s) {
     const double reach = std::max(s.support_radius * s.spacing, SurfaceTension(s).reach);
     const double shortest = 2 * reach;
     if (s.periodic[a] && length < shortest * (1 - 1e-9)) {
-      throw SettingsError("the domain is periodic along " + axis + ", but only " + number(length) +
+      throw SettingsError("the domain is periodic along " + axis + ", but only " + number_text(length) +
                           " m long; expected at least twice the support radius (with surface tension: six spacings), " +
-                          number(shortest) + " m: a longer domain or a smaller spacing");
+                          number_text(shortest) + " m: a longer domain or a smaller spacing");
     }
   }
 }
@@ -97,8 +93,8 @@ void check_motion(const Boundary& boundary, const std::string& name) {
   for (std::size_t k = 0; k < keys.size(); ++k) {
     finite = finite && std::isfinite(keys[k].time) && keys[k].translate.allFinite() && keys[k].rotate.allFinite();
     if (k > 0 && !(keys[k].time > keys[k - 1].time)) {
-      throw SettingsError(name + ": keyframe " + std::to_string(k + 1) + " at " + number(keys[k].time) +
-                          " s must be later than the one before it, at " + number(keys[k - 1].time) + " s");
+      throw SettingsError(name + ": keyframe " + std::to_string(k + 1) + " at " + number_text(keys[k].time) +
+                          " s must be later than the one before it, at " + number_text(keys[k - 1].time) + " s");
     }
   }
   if (!finite) throw SettingsError(name + ": its motion has a number that is not finite");
@@ -176,15 +172,15 @@ void check_setup(const SimulationSetup& setup) {
     if (setup.boundaries[b].mesh.triangles.empty()) throw SettingsError(name + ": its mesh has no triangles");
     check_motion(setup.boundaries[b], name);
     if (!(setup.boundaries[b].slip >= 0 && setup.boundaries[b].slip <= 1)) {
-      throw SettingsError(name + ": slip = " + number(setup.boundaries[b].slip) +
+      throw SettingsError(name + ": slip = " + number_text(setup.boundaries[b].slip) +
                           ": expected 0 (no-slip) to 1 (free slip)");
     }
     const double adhesion = setup.boundaries[b].adhesion;
     if (!(adhesion >= 0 && adhesion <= 2)) {
-      throw SettingsError(name + ": adhesion = " + number(adhesion) + ": expected 0 (not wetted) to 2");
+      throw SettingsError(name + ": adhesion = " + number_text(adhesion) + ": expected 0 (not wetted) to 2");
     }
     if (adhesion > 0 && !(setup.settings.surface_tension > 0)) {
-      throw SettingsError(name + ": adhesion = " + number(adhesion) +
+      throw SettingsError(name + ": adhesion = " + number_text(adhesion) +
                           " is a share of the surface tension, which is 0: set surface_tension too");
     }
   }

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "common/state_archive.h"
 #include "sph/geometry/triangle_mesh.h"
-#include "sph/state_archive.h"
 #include "sph/walls/boundary_motion.h"
 
 namespace flowskin::sph {

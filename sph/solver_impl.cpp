@@ -3,13 +3,14 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
+#include "common/number_text.h"
+#include "common/parallel.h"
+#include "common/stopwatch.h"
 #include "sph/bodies/fluid_bodies.h"
 #include "sph/bodies/fluid_sinks.h"
-#include "sph/parallel.h"
 #include "sph/setup_checks.h"
 #include "sph/viscosity/rheology.h"
 #include "sph/walls/boundary_sampling.h"
@@ -52,23 +53,6 @@ Vec3 middle(const std::vector<FluidPoint>& points, const std::vector<Vec3>& wall
   for (const Emitter& e : emitters) include(e.center);
   return 0.5 * (low + high);
 }
-
-std::string number(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr};
-}
-
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(omp_get_wtime()) {}
-  ~Stopwatch() { seconds_ += omp_get_wtime() - start_; }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  double start_;
-};
 
 // Settings with the automatic values, for members that are initialised from them.
 SolverSettings complete_settings(const SimulationSetup& setup, const std::vector<FluidPoint>& points,
@@ -227,9 +211,9 @@ void SolverImpl::kick_implicitly(double dt) {
   statistics_.viscosity_iterations += static_cast<std::uint64_t>(result.iterations);
   statistics_.viscosity_tolerance = result.tolerance;
   if (result.converged) return;
-  throw BlowUpError("the implicit viscosity did not converge at t = " + number(time_) + " s: after " +
+  throw BlowUpError("the implicit viscosity did not converge at t = " + number_text(time_, 6) + " s: after " +
                     std::to_string(result.iterations) + " iterations the velocities are exact to " +
-                    number(result.residual) + " m/s, asked for are " + number(result.tolerance) +
+                    number_text(result.residual, 6) + " m/s, asked for are " + number_text(result.tolerance, 6) +
                     " m/s; raise viscosity_tolerance or viscosity_max_iterations, or lower max_time_step");
 }
 
@@ -507,9 +491,9 @@ void SolverImpl::take_out_mean_compression() {
 void SolverImpl::throw_blow_up(std::size_t i) const {
   const ParticleRates& rate = particles_.rates[i];
   const Vec3& x = particles_.positions[i];
-  std::string message = "the simulation blew up at t = " + number(time_) + " s: particle " +
-                        std::to_string(particles_.ids[i]) + " at (" + number(x.x()) + ", " + number(x.y()) + ", " +
-                        number(x.z()) + ") m ";
+  std::string message = "the simulation blew up at t = " + number_text(time_, 6) + " s: particle " +
+                        std::to_string(particles_.ids[i]) + " at (" + number_text(x.x(), 6) + ", " +
+                        number_text(x.y(), 6) + ", " + number_text(x.z(), 6) + ") m ";
   const double speed = particles_.velocities[i].norm();
   // Where the user chose the speed of sound, raising max_speed would change nothing.
   const bool sound_is_automatic = std::abs(settings_.speed_of_sound - 10 * settings_.max_speed) < 1e-9;
@@ -519,16 +503,17 @@ void SolverImpl::throw_blow_up(std::size_t i) const {
         "has a force that is not a number; likely particles at nearly the same place or a time step that is too "
         "long: check bodies that overlap, or lower acoustic_cfl and viscous_cfl";
   } else if (speed > settings_.speed_of_sound) {
-    message += "moves at " + number(speed) + " m/s, faster than the speed of sound of the set-up, " +
-               number(settings_.speed_of_sound) +
-               " m/s; likely the flow is faster than max_speed = " + number(settings_.max_speed) +
+    message += "moves at " + number_text(speed, 6) + " m/s, faster than the speed of sound of the set-up, " +
+               number_text(settings_.speed_of_sound, 6) +
+               " m/s; likely the flow is faster than max_speed = " + number_text(settings_.max_speed, 6) +
                " m/s allows for, or the time step is too long: raise " + limiting_speed +
                ", or lower acoustic_cfl and viscous_cfl";
   } else {
-    message += "has " + number(1 + double(particles_.compressions[i])) +
+    message += "has " + number_text(1 + double(particles_.compressions[i]), 6) +
                " times the rest density; likely the fluid is pressed into a space that is too small, or hits a wall "
                "faster than max_speed = " +
-               number(settings_.max_speed) + " m/s allows for: raise " + limiting_speed + " or lower acoustic_cfl";
+               number_text(settings_.max_speed, 6) + " m/s allows for: raise " + limiting_speed +
+               " or lower acoustic_cfl";
   }
   throw BlowUpError(message);
 }

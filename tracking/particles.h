@@ -1,14 +1,15 @@
 // The particles as the tracker sees them. It never knows where they come from.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
+#include "common/vectors.h"
+
 namespace flowskin::tracking {
 
-using Vec3 = Eigen::Vector3d;
-using Mat3 = Eigen::Matrix3d;
+using flowskin::Mat3;
+using flowskin::Vec3;
 
 /// Particles at one time, in order of ascending id; all arrays have one entry a particle. From a recording, less may be
 /// known: docs/track.md says what the tracker makes of it.

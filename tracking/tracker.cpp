@@ -1,22 +1,22 @@
 #include "tracking/tracker.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "common/stopwatch.h"
 #include "tracking/advection/particle_paths.h"
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/extract_surface.h"
 #include "tracking/fairing/fairing.h"
 #include "tracking/fairing/repair.h"
+#include "tracking/material/material.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/mesh/mesh_measures.h"
-#include "tracking/mesh/topology.h"
 #include "tracking/remeshing/remesh.h"
-#include "tracking/topology/change_topology.h"
-#include "tracking/topology/material.h"
+#include "tracking/repair/change_topology.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -29,19 +29,6 @@ constexpr double kTorn = 3;  // times its length: the ends of an edge that were 
 constexpr int kFewIn = 50;   // one operation in so many vertices is few: another pass is not worth it
 constexpr double kDisagreementDepth = 0.3;  // of an edge length
 constexpr double kFarReach = 2;             // of old material where particles know none, in effective radii
-
-// Adds the time until its end to a sum.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 void require(bool condition, const std::string& name, double value, const std::string& wanted) {
   if (!condition) {
@@ -115,7 +102,7 @@ class TrackerImpl {
     check_mesh(state.mesh);
     state_ = std::move(state);
     rebuild_field();
-    topology_ = build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
+    topology_ = build_adjacency(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
     if (!mesh_.positions.empty() && rest_lengths_.size() != topology_.edges.size())
       throw std::invalid_argument("the state of the tracker has another number of springs than of edges");
   }
@@ -179,7 +166,7 @@ class TrackerImpl {
     std::vector<Vec3> positions = geometry.positions;
     Projection projection = project_to_surface(*field_, default_projection(settings_.field), positions);
     mesh_ = carry_material(mesh_, geometry, projection.normals, *field_, particles_, material_settings());
-    topology_ = build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
+    topology_ = build_adjacency(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
     rest_lengths_ = edge_lengths(topology_, mesh_.positions);
     velocities_known_ = false;
     report_.max_distance = projection.max_distance = largest_distance(*field_, mesh_.positions);
@@ -262,8 +249,8 @@ class TrackerImpl {
 
   // After a change of the triangles; the springs of edges that stay keep their rest lengths.
   void update_topology(const std::vector<std::uint64_t>& old_ids) {
-    const MeshTopology old_topology =
-        std::exchange(topology_, build_topology(static_cast<int>(mesh_.positions.size()), mesh_.triangles));
+    const MeshAdjacency old_topology =
+        std::exchange(topology_, build_adjacency(static_cast<int>(mesh_.positions.size()), mesh_.triangles));
     rest_lengths_ = carry_rest_lengths(old_ids, old_topology, rest_lengths_, mesh_, topology_, settings_.edge_length);
   }
 
@@ -341,7 +328,7 @@ class TrackerImpl {
   TrackerReport& report_ = state_.report;
   // What follows from the state.
   std::optional<MetaballField> field_;  // of the particles; none where there are none
-  MeshTopology topology_;
+  MeshAdjacency topology_;
   std::optional<Neighborhoods> near_;  // during a step: of places near the vertices before fairing
   bool field_of_particles_ = true;     // false during a step: the field is that of paths that jump or are blended
 };

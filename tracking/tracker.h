@@ -9,7 +9,7 @@
 #include "tracking/field/metaball_field.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/particles.h"
-#include "tracking/topology/small_parts.h"
+#include "tracking/repair/small_parts.h"
 #include "tracking/velocity/confidence.h"
 #include "tracking/velocity/velocity_method.h"
 

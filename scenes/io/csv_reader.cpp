@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "scenes/io/parse_number.h"
+#include "common/number_text.h"
 #include "scenes/io/particle_columns.h"
 #include "scenes/scene_file.h"
 

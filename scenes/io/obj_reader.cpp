@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "scenes/io/parse_number.h"
+#include "common/number_text.h"
 #include "scenes/io/polygon.h"
 #include "scenes/io/read_bytes.h"
 #include "scenes/scene_file.h"

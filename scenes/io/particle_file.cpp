@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "common/number_text.h"
 #include "scenes/io/csv_reader.h"
-#include "scenes/io/parse_number.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/io/read_bytes.h"
 #include "scenes/io/vtk_reader.h"

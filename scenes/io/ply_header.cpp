@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "scenes/io/parse_number.h"
+#include "common/number_text.h"
 #include "scenes/scene_file.h"
 
 namespace flowskin::scenes {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string_view>
 
-#include "scenes/io/parse_number.h"
+#include "common/number_text.h"
 #include "scenes/io/ply_header.h"
 #include "scenes/io/read_bytes.h"
 #include "scenes/scene_file.h"

@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "common/number_text.h"
 #include "scenes/io/number_type.h"
-#include "scenes/io/parse_number.h"
 #include "scenes/scene_file.h"
 
 namespace flowskin::scenes {

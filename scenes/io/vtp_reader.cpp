@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/number_text.h"
 #include "scenes/io/number_type.h"
-#include "scenes/io/parse_number.h"
 #include "scenes/io/vtk_data.h"
 #include "scenes/io/xml_scanner.h"
 #include "scenes/scene_file.h"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/state_archive.h"
 #include "sph/geometry/triangle_mesh.h"
-#include "sph/state_archive.h"
 
 namespace flowskin::scenes {
 
@@ -75,10 +75,10 @@ class ParticleSource {
   virtual bool ends_before(double) const { return false; }
 
   /// All that its future depends on but the scene. To go on later, make the source from the scene again and restore it.
-  virtual void save(sph::StateWriter& writer) const = 0;
-  /// @throws sph::StateError, SceneError where the state is that of another source, or its files are not what they
+  virtual void save(StateWriter& writer) const = 0;
+  /// @throws StateError, SceneError where the state is that of another source, or its files are not what they
   /// were.
-  virtual void restore(sph::StateReader& reader) = 0;
+  virtual void restore(StateReader& reader) = 0;
 };
 
 }  // namespace flowskin::scenes

@@ -18,8 +18,8 @@ class PrescribedSource : public ParticleSource {
   void advance_to(double time) override;
   double spacing() const override { return spacing_; }
   SourceStatistics statistics() const override;
-  void save(sph::StateWriter& writer) const override { const_cast<PrescribedSource*>(this)->visit(writer); }
-  void restore(sph::StateReader& reader) override { visit(reader); }
+  void save(StateWriter& writer) const override { const_cast<PrescribedSource*>(this)->visit(writer); }
+  void restore(StateReader& reader) override { visit(reader); }
 
  private:
   template <class Archive>

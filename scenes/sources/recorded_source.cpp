@@ -208,14 +208,14 @@ void check_same_files(const SequenceMark& then, const SequenceMark& now) {
 
 }  // namespace
 
-void RecordedSource::save(sph::StateWriter& writer) const {
+void RecordedSource::save(StateWriter& writer) const {
   std::vector<std::uint64_t> cached;
   for (const auto& entry : cache_) cached.push_back(entry.first);
   writer.section("recorded particles");
   writer(SequenceMark(sequence_), state_, rest_positions_, cached);
 }
 
-void RecordedSource::restore(sph::StateReader& reader) {
+void RecordedSource::restore(StateReader& reader) {
   SequenceMark mark;
   std::vector<std::uint64_t> cached;
   reader.section("recorded particles");
@@ -223,7 +223,7 @@ void RecordedSource::restore(sph::StateReader& reader) {
   check_same_files(mark, SequenceMark(sequence_));
   cache_.clear();
   for (const std::uint64_t k : cached) {
-    if (k >= sequence_.files.size()) throw sph::StateError("the saved state names a file that is not there");
+    if (k >= sequence_.files.size()) throw StateError("the saved state names a file that is not there");
     read_into_cache(k);
   }
 }

@@ -25,8 +25,8 @@ class RecordedSource : public ParticleSource {
   double spacing() const override { return spacing_; }
   SourceStatistics statistics() const override;
   bool ends_before(double time) const override;
-  void save(sph::StateWriter& writer) const override;
-  void restore(sph::StateReader& reader) override;
+  void save(StateWriter& writer) const override;
+  void restore(StateReader& reader) override;
 
  private:
   bool has_lasting_ids() const { return sequence_.ids != ParticleSequence::Ids::none; }

@@ -49,7 +49,7 @@ bool SimulationSource::advance_towards(double time, const std::function<bool()>&
   return true;
 }
 
-void SimulationSource::restore(sph::StateReader& reader) {
+void SimulationSource::restore(StateReader& reader) {
   solver_.restore(reader);
   take_state();
 }

@@ -18,8 +18,8 @@ class SimulationSource : public ParticleSource {
   bool advance_towards(double time, const std::function<bool()>& stop) override;
   double spacing() const override { return solver_.settings().spacing; }
   SourceStatistics statistics() const override;
-  void save(sph::StateWriter& writer) const override { solver_.save(writer); }
-  void restore(sph::StateReader& reader) override;
+  void save(StateWriter& writer) const override { solver_.save(writer); }
+  void restore(StateReader& reader) override;
   const sph::Solver& solver() const { return solver_; }
 
  private:

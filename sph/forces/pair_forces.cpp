@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "common/parallel.h"
 #include "sph/forces/equation_of_state.h"
 #include "sph/forces/kernels.h"
 #include "sph/forces/minimum_image.h"
-#include "sph/parallel.h"
 #include "sph/viscosity/viscous_pairs.h"
 
 namespace flowskin::sph {

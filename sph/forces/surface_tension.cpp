@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "common/parallel.h"
 #include "sph/forces/kernels.h"
-#include "sph/parallel.h"
 #include "sph/simd.h"
 
 namespace flowskin::sph {

@@ -1,24 +1,19 @@
 // Indexed triangles as the solver sees them: walls and the outlines of fluid bodies.
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
 #include <vector>
+
+#include "common/vectors.h"
 
 namespace flowskin::sph {
 
-using Vec3 = Eigen::Vector3d;
+using flowskin::Box;
+using flowskin::Vec3;
 
 /// Indexed triangles; positions in m, counter-clockwise seen from outside. Open surfaces are allowed.
 struct TriangleMesh {
   std::vector<Vec3> positions;
-  std::vector<std::array<int, 3>> triangles;
-};
-
-/// Axis-aligned box, both corners in m.
-struct Box {
-  Vec3 min = Vec3::Zero();
-  Vec3 max = Vec3::Zero();
+  std::vector<Triangle> triangles;
 };
 
 }  // namespace flowskin::sph

@@ -9,10 +9,6 @@
 
 namespace flowskin::sph {
 
-/// Index of a cell along the three-dimensional Hilbert curve with 2^levels cells along each edge [Skilling 2004].
-/// @param levels 1 to 21
-std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z, int levels);
-
 /// Sorts points along a Hilbert curve.
 class HilbertOrder {
  public:

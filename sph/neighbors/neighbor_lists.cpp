@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sph/parallel.h"
+#include "common/parallel.h"
 #include "sph/simd.h"
 
 namespace flowskin::sph {

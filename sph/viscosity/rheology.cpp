@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "common/parallel.h"
 #include "sph/forces/kernels.h"
 #include "sph/forces/minimum_image.h"
-#include "sph/parallel.h"
 #include "sph/simd.h"
 
 namespace flowskin::sph {

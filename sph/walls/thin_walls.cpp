@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "sph/geometry/triangle_geometry.h"
+#include "common/triangle.h"
 #include "sph/neighbors/point_clusters.h"
 
 namespace flowskin::sph {

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "sph/parallel.h"
+#include "common/parallel.h"
 
 namespace flowskin::sph {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sph/geometry/triangle_geometry.h"
+#include "common/triangle.h"
 #include "sph/neighbors/point_grid.h"
 #include "sph/walls/wall_guard.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sph/geometry/triangle_geometry.h"
+#include "common/triangle.h"
 
 namespace flowskin::sph {
 

@@ -13,8 +13,8 @@
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/extraction/extract_surface.h"
 #include "tracking/field/neighborhoods.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/mesh/self_intersections.h"
-#include "tracking/mesh/topology.h"
 #include "tracking/tracker.h"
 #include "tracking/velocity/velocity_method.h"
 
@@ -59,7 +59,7 @@ struct LargeMesh {
       : particles(test::lattice(1, 66, 0.2, 42, [](const Vec3& x) { return std::abs(x.norm() - 61) < 2.5; })),
         field(particles, flow_with_noise(), default_field_settings(1)),
         surface(extract_surface(field, 0.75)),
-        topology(build_topology(static_cast<int>(surface.positions.size()), surface.triangles)) {}
+        topology(build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles)) {}
 
   std::vector<Vec3> flow_with_noise() const {
     test::Random random(43);
@@ -71,7 +71,7 @@ struct LargeMesh {
   std::vector<Vec3> particles;
   MetaballField field;
   SurfaceGeometry surface;
-  MeshTopology topology;
+  MeshAdjacency topology;
 };
 
 const LargeMesh& large_mesh() {

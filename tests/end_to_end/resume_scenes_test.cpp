@@ -64,14 +64,14 @@ struct Course {
   }
   std::string saved() const {
     std::string bytes;
-    sph::StateWriter writer([&](std::string_view piece) { bytes += piece; });
+    StateWriter writer([&](std::string_view piece) { bytes += piece; });
     source->save(writer);
     tools::visit_tracker(writer, *tracker);
     writer.flush();
     return bytes;
   }
   void restore(const std::string& bytes) {
-    sph::StateReader reader(bytes);
+    StateReader reader(bytes);
     source->restore(reader);
     tools::visit_tracker(reader, *tracker);
     EXPECT_EQ(reader.bytes_left(), 0U);
@@ -79,7 +79,7 @@ struct Course {
   /// Without seconds spent.
   std::string shown() const {
     std::string bytes;
-    sph::StateWriter writer([&](std::string_view piece) { bytes += piece; });
+    StateWriter writer([&](std::string_view piece) { bytes += piece; });
     writer(source->state(), source->statistics().steps, source->statistics().wall_crossings);
     tracking::SurfaceMesh mesh = tracker->mesh();
     tracking::visit_state(writer, mesh);

@@ -7,10 +7,10 @@
 #include <limits>
 #include <string>
 
+#include "common/closest_point.h"
 #include "end_to_end/program.h"
 #include "scenes/io/ply_reader.h"
 #include "tools/io/surface_writers.h"
-#include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/mesh_check.h"
 
 namespace flowskin {
@@ -56,10 +56,10 @@ class TrackCommand : public ::testing::Test {
 
   /// Largest distance of a vertex from the other surface (m).
   static double distance(const tracking::SurfaceMesh& from, const tracking::SurfaceMesh& to) {
-    const tracking::ClosestPointTree tree(to.positions, to.triangles);
+    const ClosestPointTree tree(to.positions, to.triangles);
     double largest = 0;
     for (const auto& x : from.positions) {
-      const tracking::MeshPoint point = tree.closest(x, 10);
+      const MeshPoint point = tree.closest(x, 10);
       largest = std::max(largest, point.triangle < 0 ? std::numeric_limits<double>::infinity() : point.distance);
     }
     return largest;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "common/closest_point.h"
+#include "common/quantile.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/make_source.h"
 #include "tools/pipeline/tracker_bridge.h"
@@ -12,18 +14,16 @@
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/extract_surface.h"
 #include "tracking/ground_truth/surface_comparison.h"
-#include "tracking/mesh/closest_point.h"
+#include "tracking/material/material.h"
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/self_intersections.h"
-#include "tracking/quantile.h"
-#include "tracking/topology/material.h"
 
 namespace flowskin::surfaces {
 namespace {
 
+using quantile;
 using tracking::MetaballField;
-using tracking::quantile;
 using tracking::SurfaceMesh;
 using tracking::Triangle;
 using tracking::Vec3;
@@ -168,7 +168,7 @@ class Run {
 
   ReturnMeasures round_trip() const {
     const SurfaceMesh& last = tracker_->mesh();
-    const tracking::ClosestPointTree tree(first_.positions, first_.triangles);
+    const ClosestPointTree tree(first_.positions, first_.triangles);
     std::vector<double> distances, texture;
     ReturnMeasures result;
     for (std::size_t v = 0; v < last.positions.size(); ++v) {

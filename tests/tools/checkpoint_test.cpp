@@ -33,7 +33,7 @@ class Checkpoints : public ::testing::Test {
 
   static CheckpointHeader header(int frame) { return {version_text(), "{\"frames\": 3}", {{"a", 1}}, "", frame}; }
   static void save(const CheckpointFolder& folder, int frame) {
-    folder.save(header(frame), [&](sph::StateWriter& writer) { writer(frame, std::string(3000000, 'x')); });
+    folder.save(header(frame), [&](StateWriter& writer) { writer(frame, std::string(3000000, 'x')); });
   }
   std::size_t count() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
@@ -73,7 +73,7 @@ TEST_F(Checkpoints, TheTwoNewestAreKept) {
 TEST_F(Checkpoints, AnUnfinishedOneIsNotThere) {
   const CheckpointFolder folder(folder_);
   save(folder, 1);
-  EXPECT_THROW(folder.save(header(2), [](sph::StateWriter&) { throw RunError("no space"); }), RunError);
+  EXPECT_THROW(folder.save(header(2), [](StateWriter&) { throw RunError("no space"); }), RunError);
   EXPECT_EQ(folder.newest()->filename(), "frame_0001.bin");
   EXPECT_EQ(count(), 1U);
 }
@@ -81,7 +81,7 @@ TEST_F(Checkpoints, AnUnfinishedOneIsNotThere) {
 TEST_F(Checkpoints, OfAnotherVersionAreRefused) {
   CheckpointHeader other = header(3);
   other.program = "flowskin 99.0";
-  CheckpointFolder(folder_).save(other, [](sph::StateWriter&) {});
+  CheckpointFolder(folder_).save(other, [](StateWriter&) {});
   try {
     Checkpoint checkpoint(folder_ / "frame_0003.bin");
     FAIL() << "must throw";

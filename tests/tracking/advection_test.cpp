@@ -98,7 +98,7 @@ TEST(ParticlePaths, RefuseBadParticles) {
 // A velocity field that is known everywhere: rotation about an axis, with a pull along it.
 class AnalyticVelocity : public VelocityMethod {
  public:
-  void evaluate(const MetaballField&, const MeshTopology&, const std::vector<Vec3>& positions,
+  void evaluate(const MetaballField&, const MeshAdjacency&, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
     velocities.clear();
     for (const Vec3& x : positions) velocities.push_back(Vec3(0.2, 0.3, 1).cross(x));
@@ -133,7 +133,7 @@ TEST(Integrator, ConvergesWithItsOrder) {
 // The velocity of the particles' mean: changes with the time of the field, so it tests the times of the stages.
 class MeanVelocity : public VelocityMethod {
  public:
-  void evaluate(const MetaballField& field, const MeshTopology&, const std::vector<Vec3>& positions,
+  void evaluate(const MetaballField& field, const MeshAdjacency&, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
     velocities.assign(positions.size(), field.velocities().front());
   }

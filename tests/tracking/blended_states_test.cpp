@@ -8,8 +8,8 @@
 
 #include "tests/tracking/mesh_test_shapes.h"
 #include "tracking/advection/particle_paths.h"
+#include "tracking/material/material.h"
 #include "tracking/mesh/mesh_check.h"
-#include "tracking/topology/material.h"
 #include "tracking/tracker.h"
 
 namespace flowskin::tracking {

@@ -24,11 +24,11 @@ struct Body {
   explicit Body(double radius)
       : field(test::ball_of_particles(radius), {}, default_field_settings(1)),
         surface(extract_surface(field, kEdge)),
-        topology(build_topology(static_cast<int>(surface.positions.size()), surface.triangles)),
+        topology(build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles)),
         rest_lengths(edge_lengths(topology, surface.positions)) {}
   MetaballField field;
   SurfaceGeometry surface;
-  MeshTopology topology;
+  MeshAdjacency topology;
   std::vector<double> rest_lengths;
 };
 
@@ -141,7 +141,7 @@ TEST(Fairing, MoveGoesTheShareOfTheWayToEquilibrium) {
     positions.emplace_back(std::cos(angle), std::sin(angle), 0.2);  // off the plane: projection must remove that
     triangles.push_back({0, 1 + i, 1 + (i + 1) % 6});
   }
-  const MeshTopology topology = build_topology(7, triangles);
+  const MeshAdjacency topology = build_adjacency(7, triangles);
   const std::vector<double> rest(topology.edges.size(), 1.0);
   const Vec3 move = fairing_move({topology, rest, Laying::projected, 0.5}, 0, {0, 0, 1}, positions);
   EXPECT_LT((move - 0.5 * Vec3(-0.05, 0.03, 0)).norm(), 0.15 * 0.5 * 0.06);

@@ -10,8 +10,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "common/hilbert.h"
 #include "tests/tracking/field_test_bodies.h"
-#include "tracking/field/hilbert.h"
 
 namespace flowskin::tracking {
 namespace {

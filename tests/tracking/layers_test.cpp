@@ -6,7 +6,7 @@
 
 #include "tests/tracking/mesh_test_shapes.h"
 #include "tracking/extraction/extract_surface.h"
-#include "tracking/topology/material.h"
+#include "tracking/material/material.h"
 #include "tracking/tracker.h"
 
 namespace flowskin::tracking {

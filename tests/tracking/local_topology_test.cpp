@@ -1,5 +1,5 @@
 // Holes and parts that only one of two surfaces has are found where they are.
-#include "tracking/topology/local_topology.h"
+#include "tracking/repair/local_topology.h"
 
 #include <gtest/gtest.h>
 

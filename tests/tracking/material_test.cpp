@@ -1,5 +1,5 @@
 // Material must survive a change of the mesh.
-#include "tracking/topology/material.h"
+#include "tracking/material/material.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include <cmath>
 #include <set>
 
+#include "common/quantile.h"
 #include "tests/tracking/field_test_bodies.h"
 #include "tests/tracking/mesh_test_shapes.h"
 #include "tracking/advection/particle_paths.h"
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/extract_surface.h"
-#include "tracking/quantile.h"
 
 namespace flowskin::tracking {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/closest_point.h"
 #include "tests/tracking/mesh_test_shapes.h"
-#include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/editable_mesh.h"
 #include "tracking/mesh/mesh_check.h"
 
@@ -26,8 +26,8 @@ double torus(const Vec3& x) {
   return 0.4 - std::hypot(ring, x[2]);
 }
 
-TEST(MeshTopology, OfATetrahedron) {
-  const MeshTopology topology = build_topology(4, tetrahedron().triangles);
+TEST(MeshAdjacency, OfATetrahedron) {
+  const MeshAdjacency topology = build_adjacency(4, tetrahedron().triangles);
   EXPECT_EQ(topology.edges.size(), 6U);
   for (int v = 0; v < 4; ++v) {
     EXPECT_EQ(topology.star(v).size(), 3U);
@@ -44,9 +44,9 @@ TEST(MeshTopology, OfATetrahedron) {
   }
 }
 
-TEST(MeshTopology, RingsAscendAndNameTheirEdges) {
+TEST(MeshAdjacency, RingsAscendAndNameTheirEdges) {
   const SurfaceGeometry surface = marched(ball, 1, 0.2);
-  const MeshTopology topology = build_topology(static_cast<int>(surface.positions.size()), surface.triangles);
+  const MeshAdjacency topology = build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles);
   EXPECT_TRUE(std::is_sorted(topology.edges.begin(), topology.edges.end()));
   for (int v = 0; v < topology.vertex_count(); ++v) {
     int last = -1;
@@ -96,7 +96,7 @@ TEST(MeshMeasures, NormalsOfABall) {
 TEST(EditableMesh, AnyCollapsesAndFlipsKeepAMeshSound) {
   SurfaceGeometry surface = marched(torus, 1.5, 0.15);
   const int before = static_cast<int>(surface.positions.size());
-  const MeshTopology topology = build_topology(before, surface.triangles);
+  const MeshAdjacency topology = build_adjacency(before, surface.triangles);
   EditableMesh mesh(surface.positions, surface.triangles);
   int collapses = 0, flips = 0;
   for (std::size_t e = 0; e < topology.edges.size(); ++e) {

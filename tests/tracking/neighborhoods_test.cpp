@@ -10,9 +10,9 @@
 #include <limits>
 #include <numeric>
 
+#include "common/hilbert.h"
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/advection/projection.h"
-#include "tracking/field/hilbert.h"
 
 namespace flowskin::tracking {
 namespace {

@@ -68,7 +68,7 @@ TEST(Remesh, BringsEdgesToAFinerAndACoarserTargetAndKeepsTheMeshSound) {
     // Every edge may have any length within the limits, so the mean says little; but few may lie below them.
     EXPECT_GT(quality.mean_edge, settings.shortest * target);
     const std::vector<double> lengths =
-        edge_lengths(build_topology(int(mesh.positions.size()), mesh.triangles), mesh.positions);
+        edge_lengths(build_adjacency(int(mesh.positions.size()), mesh.triangles), mesh.positions);
     const auto too_short = std::count_if(lengths.begin(), lengths.end(),
                                          [&](double length) { return length < settings.shortest * target; });
     EXPECT_LT(double(too_short), 0.02 * double(lengths.size()));
@@ -114,13 +114,13 @@ TEST(Remesh, ANewVertexTakesTheMiddleOfItsEdge) {
 TEST(Remesh, SpringsOfEdgesThatStayKeepTheirRestLength) {
   Ball body = ball(5.2);
   SurfaceMesh mesh = body.mesh;
-  const MeshTopology before = build_topology(int(mesh.positions.size()), mesh.triangles);
+  const MeshAdjacency before = build_adjacency(int(mesh.positions.size()), mesh.triangles);
   std::vector<double> lengths(before.edges.size());
   for (std::size_t e = 0; e < lengths.size(); ++e) lengths[e] = 100 + double(e);
   RemeshSettings settings;
   settings.edge_length = 0.8 * kEdge;
   ASSERT_TRUE(remesh(body.field, settings, mesh).changed());
-  const MeshTopology after = build_topology(int(mesh.positions.size()), mesh.triangles);
+  const MeshAdjacency after = build_adjacency(int(mesh.positions.size()), mesh.triangles);
   const auto carried = carry_rest_lengths(body.mesh.ids, before, lengths, mesh, after, settings.edge_length);
   int kept = 0;
   for (std::size_t e = 0; e < carried.size(); ++e) {

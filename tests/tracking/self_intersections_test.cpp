@@ -9,9 +9,9 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "common/orientation.h"
 #include "tests/tracking/exact_intersections.h"
 #include "tests/tracking/mesh_test_shapes.h"
-#include "tracking/mesh/orientation.h"
 
 namespace flowskin::tracking {
 namespace {

@@ -1,5 +1,5 @@
 // Drops and bubbles below a size are kept, dropped, or made balls.
-#include "tracking/topology/small_parts.h"
+#include "tracking/repair/small_parts.h"
 
 #include <gtest/gtest.h>
 

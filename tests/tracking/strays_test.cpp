@@ -1,5 +1,5 @@
 // Where two surfaces are too far from each other.
-#include "tracking/topology/strays.h"
+#include "tracking/repair/strays.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -10,7 +10,7 @@
 #include "tests/tracking/mesh_test_shapes.h"
 #include "tracking/extraction/extract_surface.h"
 #include "tracking/mesh/mesh_measures.h"
-#include "tracking/topology/change_topology.h"
+#include "tracking/repair/change_topology.h"
 
 namespace flowskin::tracking {
 namespace {

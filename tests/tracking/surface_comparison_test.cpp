@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "common/closest_point.h"
 #include "tests/tracking/mesh_test_shapes.h"
-#include "tracking/mesh/closest_point.h"
 #include "tracking/mesh/hausdorff.h"
 #include "tracking/mesh/mesh_measures.h"
 

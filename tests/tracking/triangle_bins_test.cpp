@@ -1,5 +1,5 @@
 // Whatever meets a box is among the triangles near it.
-#include "tracking/topology/triangle_bins.h"
+#include "tracking/repair/triangle_bins.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/extraction/extract_surface.h"
-#include "tracking/mesh/topology.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/velocity_method.h"
 
 namespace flowskin::tracking {
@@ -33,7 +33,7 @@ struct Body {
   std::vector<Vec3> particles;
   FieldSettings settings;
   std::vector<Vec3> surface;  ///< Points on f = 0.
-  MeshTopology topology;      ///< Of the mesh on them.
+  MeshAdjacency topology;     ///< Of the mesh on them.
 };
 
 /// Points on f = 0: from far outside along rays to the centre, then by Newton's method [FMM13, Eq. 12].
@@ -70,7 +70,7 @@ Body make_body(bool ball, double radius_in_spacings) {
   body.settings = default_field_settings(spacing, radius_in_spacings);
   const SurfaceGeometry surface = extract_surface({body.particles, {}, body.settings}, 0.7 * spacing);
   body.surface = surface.positions;
-  body.topology = build_topology(static_cast<int>(surface.positions.size()), surface.triangles);
+  body.topology = build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles);
   return body;
 }
 
@@ -89,7 +89,7 @@ Flow rotation() {
 
 std::vector<Vec3> evaluate(const std::string& method, const std::vector<Vec3>& particles,
                            const std::vector<Vec3>& velocities, const FieldSettings& settings,
-                           const std::vector<Vec3>& points, const MeshTopology& topology = {}) {
+                           const std::vector<Vec3>& points, const MeshAdjacency& topology = {}) {
   std::vector<Vec3> result;
   make_velocity_method(method)->evaluate({particles, velocities, settings}, topology, points, result);
   return result;
@@ -152,7 +152,7 @@ Body small_body(const std::vector<Vec3>& particles) {
   Body body{particles, {1, 0.5, 1}, {}, {}};
   const SurfaceGeometry surface = extract_surface({particles, {}, body.settings}, 0.15);
   body.surface = surface.positions;
-  body.topology = build_topology(static_cast<int>(surface.positions.size()), surface.triangles);
+  body.topology = build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles);
   return body;
 }
 

@@ -63,7 +63,7 @@ void draw_wire(const scenes::CameraSpec& spec, const tracking::SurfaceMesh& mesh
   const Camera camera(spec, image.width, image.height, Vec3::Zero());
   WireLayer wire(image.width, image.height);
   for (const tracking::Triangle& triangle : mesh.triangles) {
-    const Vec3 area = tracking::doubled_area_vector(mesh.positions, triangle);
+    const Vec3 area = doubled_area_vector(mesh.positions, triangle);
     if (area.dot(spec.position - mesh.positions[triangle[0]]) <= 0) continue;
     for (int corner = 0; corner < 3; ++corner)
       wire.line(camera.project(mesh.positions[triangle[corner]]),

@@ -12,7 +12,7 @@
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/extract_surface.h"
 #include "tracking/fairing/fairing.h"
-#include "tracking/mesh/topology.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/velocity_method.h"
 
 namespace flowskin::tools {
@@ -74,7 +74,7 @@ class Rider {
         settings_(settings),
         method_(tracking::make_velocity_method(settings.velocity)),
         starts_(start.positions),
-        topology_(tracking::build_topology(int(start.positions.size()), start.triangles)),
+        topology_(tracking::build_adjacency(int(start.positions.size()), start.triangles)),
         rest_lengths_(tracking::edge_lengths(topology_, start.positions)),
         positions_(start.positions),
         moving_(motion_, Truth::motion, starts_),
@@ -128,7 +128,7 @@ class Rider {
   RideSettings settings_;
   std::unique_ptr<tracking::VelocityMethod> method_;
   std::vector<Vec3> starts_;
-  tracking::MeshTopology topology_;
+  tracking::MeshAdjacency topology_;
   std::vector<double> rest_lengths_;
   std::vector<Vec3> positions_;
   ErrorLog moving_, unspinning_;

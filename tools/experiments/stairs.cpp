@@ -15,7 +15,7 @@
 #include "tools/render/renderer.h"
 #include "tools/render/video.h"
 #include "tools/textures/texture_mapping.h"
-#include "tracking/topology/material.h"
+#include "tracking/material/material.h"
 
 namespace flowskin::tools {
 namespace {

@@ -11,7 +11,7 @@
 #include "tracking/advection/integrator.h"
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/extract_surface.h"
-#include "tracking/mesh/topology.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/velocity_method.h"
 
 namespace flowskin::tools {
@@ -133,7 +133,7 @@ FlowErrors velocity_errors(const tracking::VelocityMethod& method, const FlowBod
   const FieldSettings settings = tracking::default_field_settings(body.spacing, radius);
   const MetaballField field = field_at(body, settings, flow, 0);
   const auto surface = tracking::extract_surface(field, kEdge * body.spacing);
-  const auto topology = tracking::build_topology(static_cast<int>(surface.positions.size()), surface.triangles);
+  const auto topology = tracking::build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles);
   std::vector<Vec3> velocities;
   method.evaluate(field, topology, surface.positions, velocities);
 
@@ -155,7 +155,7 @@ double path_error(const std::string& method, const FlowBody& body, double radius
   const auto velocity = tracking::make_velocity_method(method);
   MetaballField field = field_at(body, settings, flow, 0);
   const auto surface = tracking::extract_surface(field, kEdge * body.spacing);
-  const auto topology = tracking::build_topology(static_cast<int>(surface.positions.size()), surface.triangles);
+  const auto topology = tracking::build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles);
   std::vector<Vec3> positions = surface.positions;
   const auto at = [&](double time) { return field_at(body, settings, flow, time); };
   for (int step = 0; step < kSteps; ++step) {

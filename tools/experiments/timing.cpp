@@ -10,7 +10,7 @@
 #include "tools/report/stage_clock.h"
 #include "tracking/advection/projection.h"
 #include "tracking/fairing/fairing.h"
-#include "tracking/mesh/topology.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/velocity_method.h"
 
 namespace flowskin::tools {
@@ -52,7 +52,7 @@ StepTime time_steps(const scenes::Scene& scene, const tracking::SurfaceMesh& sta
   constexpr double kEnough = 1.0;  // s
   const MaterialMotion motion(scene);
   const auto method = tracking::make_velocity_method(name);
-  const auto topology = tracking::build_topology(int(start.positions.size()), start.triangles);
+  const auto topology = tracking::build_adjacency(int(start.positions.size()), start.triangles);
   const auto rest_lengths = tracking::edge_lengths(topology, start.positions);
   const auto projection = tracking::default_projection(motion.field_settings());
   std::vector<Vec3> positions = start.positions, velocities;

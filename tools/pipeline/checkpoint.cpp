@@ -28,7 +28,7 @@ constexpr std::size_t kKept = 2;
 template <class Number>
 Number number_at(std::string_view bytes, std::size_t place) {
   Number number{};
-  sph::StateReader reader(bytes.substr(place, sizeof(Number)));
+  StateReader reader(bytes.substr(place, sizeof(Number)));
   reader(number);
   return number;
 }
@@ -68,7 +68,7 @@ Checkpoint::Checkpoint(fs::path file) : file_(std::move(file)), bytes_(scenes::r
                     header_.program, version_text()));
 }
 
-void CheckpointFolder::save(const CheckpointHeader& header, const std::function<void(sph::StateWriter&)>& state) const {
+void CheckpointFolder::save(const CheckpointHeader& header, const std::function<void(StateWriter&)>& state) const {
   AtomicFile file(folder_ / fmt::format("frame_{:04}.bin", header.frame));
   std::uint64_t size = 0;
   std::uint32_t crc = 0;
@@ -78,11 +78,11 @@ void CheckpointFolder::save(const CheckpointHeader& header, const std::function<
     file.write(bytes);
   };
   put(kMagic);
-  sph::StateWriter writer(put);
+  StateWriter writer(put);
   writer(kFormatVersion, header);
   state(writer);
   writer.flush();
-  sph::StateWriter tail([&](std::string_view bytes) { file.write(bytes); });
+  StateWriter tail([&](std::string_view bytes) { file.write(bytes); });
   tail(size, crc);
   tail.flush();
   file.write(kEnd);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sph/state_archive.h"
+#include "common/state_archive.h"
 
 namespace flowskin::tools {
 
@@ -39,14 +39,14 @@ class Checkpoint {
   const std::filesystem::path& file() const { return file_; }
   const CheckpointHeader& header() const { return header_; }
   /// The state, to be read once.
-  sph::StateReader& state() { return *reader_; }
+  StateReader& state() { return *reader_; }
   /// @throws InputError with this as the reason.
   [[noreturn]] void refuse(const std::string& reason) const;
 
  private:
   std::filesystem::path file_;
   std::string bytes_;
-  std::optional<sph::StateReader> reader_;
+  std::optional<StateReader> reader_;
   CheckpointHeader header_;
 };
 
@@ -57,7 +57,7 @@ class CheckpointFolder {
 
   /// Saves a checkpoint, whole or not at all, down to the disk; older ones go. @param state writes the state
   /// @throws RunError; the older ones are still there then.
-  void save(const CheckpointHeader& header, const std::function<void(sph::StateWriter&)>& state) const;
+  void save(const CheckpointHeader& header, const std::function<void(StateWriter&)>& state) const;
   /// The newest one; none where there is none.
   std::optional<std::filesystem::path> newest() const;
 

@@ -8,15 +8,15 @@
 #include <numeric>
 #include <utility>
 
+#include "common/quantile.h"
 #include "tools/errors.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/render/video.h"
 #include "tools/report/compare_report.h"
 #include "tracking/ground_truth/mesh_errors.h"
+#include "tracking/material/material.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/texture_stretch.h"
-#include "tracking/quantile.h"
-#include "tracking/topology/material.h"
 
 namespace flowskin::tools {
 namespace {
@@ -63,8 +63,8 @@ void add_markers(const tracking::Markers& markers, const tracking::MetaballField
   }
   row.markers = int(depths.size());
   row.markers_left = int(markers.ids.size() - depths.size());
-  row.marker_depth = tracking::quantile(depths, 0.5);
-  row.marker_drift = tracking::quantile(drifts, 0.5);
+  row.marker_depth = quantile(depths, 0.5);
+  row.marker_drift = quantile(drifts, 0.5);
 }
 
 void add_marker_errors(const tracking::MarkerErrors& errors, CompareRow& row) {
@@ -93,14 +93,14 @@ void add_mesh(const tracking::SurfaceMesh& mesh, CompareRow& row) {
   row.triangles = mesh.triangles.size();
   constexpr double degrees = 180 / std::numbers::pi;
   const std::vector<double> angles = tracking::smallest_angles(mesh.positions, mesh.triangles);
-  row.angle_min = degrees * tracking::quantile(angles, 0);
-  row.angle_p05 = degrees * tracking::quantile(angles, 0.05);
+  row.angle_min = degrees * quantile(angles, 0);
+  row.angle_p05 = degrees * quantile(angles, 0.05);
   if (!angles.empty())
     row.angle_mean = degrees * std::accumulate(angles.begin(), angles.end(), 0.0) / double(angles.size());
   std::vector<double> stretch;
   for (const auto& triangle : tracking::texture_stretch(mesh)) stretch.push_back(triangle.largest);
-  row.stretch_median = tracking::quantile(stretch, 0.5);
-  row.stretch_p99 = tracking::quantile(stretch, 0.99);
+  row.stretch_median = quantile(stretch, 0.5);
+  row.stretch_p99 = quantile(stretch, 0.99);
 }
 
 }  // namespace
@@ -180,7 +180,7 @@ CompareRow Comparison::measure(int frame, const Entry& entry, const tracking::Me
   add_marker_errors(tracking::marker_errors(mesh, truth_.markers(), kReachInSpacings * scene_.particles.spacing), row);
   add_velocity_errors(tracking::velocity_errors(mesh, flow), row);
   if (!mesh.positions.empty() && !truth_.particles().positions.empty())
-    row.texture_drift = tracking::quantile(tracking::material_drift(mesh, field, truth_.particles()), 0.5);
+    row.texture_drift = quantile(tracking::material_drift(mesh, field, truth_.particles()), 0.5);
   return row;
 }
 

@@ -73,7 +73,7 @@ std::vector<std::pair<std::string, std::string>> values_of(const std::string& sc
 
 std::uint32_t checksum_of(const sph::TriangleMesh& mesh) {
   std::uint32_t sum = 0;
-  sph::StateWriter writer([&](std::string_view bytes) { sum = checksum(sum, bytes); });
+  StateWriter writer([&](std::string_view bytes) { sum = checksum(sum, bytes); });
   writer(mesh.positions, mesh.triangles);
   writer.flush();
   return sum;

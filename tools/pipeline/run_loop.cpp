@@ -81,7 +81,7 @@ void SceneRun::save_checkpoint() {
   const double before = elapsed_;
   elapsed_ += wall_seconds() - began_;
   clock_.time("checkpoints", [&] {
-    checkpoints_.save(header(), [&](sph::StateWriter& writer) {
+    checkpoints_.save(header(), [&](StateWriter& writer) {
       source_->save(writer);
       visit(writer);
     });
@@ -105,7 +105,7 @@ void SceneRun::restore(Checkpoint& checkpoint) {
   try {
     source_->restore(checkpoint.state());
     visit(checkpoint.state());
-    if (checkpoint.state().bytes_left() > 0) throw sph::StateError("there is more in it than is expected");
+    if (checkpoint.state().bytes_left() > 0) throw StateError("there is more in it than is expected");
   } catch (const scenes::SceneError& error) {
     checkpoint.refuse(std::string("cannot be resumed from: ") + error.what());
   } catch (const std::exception& error) {

@@ -4,20 +4,20 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/quantile.h"
 #include "tracking/advection/particle_paths.h"
 #include "tracking/extraction/extract_surface.h"
 #include "tracking/ground_truth/surface_comparison.h"
+#include "tracking/material/material.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/self_intersections.h"
 #include "tracking/mesh/texture_stretch.h"
-#include "tracking/quantile.h"
-#include "tracking/topology/material.h"
 
 namespace flowskin::tools {
 
 namespace {
 
-using tracking::quantile;
+using quantile;
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kGoodAngle = 10 * kDegree;

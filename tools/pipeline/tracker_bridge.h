@@ -4,9 +4,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "common/state_archive.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/particle_source.h"
-#include "sph/state_archive.h"
 #include "tools/frame_data.h"
 #include "tracking/tracker.h"
 
@@ -32,7 +32,7 @@ double max_slip_of(const scenes::Scene& scene);
 /// Saves or restores a tracker, which is made from its settings before.
 template <class Archive>
 void visit_tracker(Archive& archive, tracking::Tracker& tracker) {
-  if constexpr (std::is_same_v<Archive, sph::StateWriter>) {
+  if constexpr (std::is_same_v<Archive, StateWriter>) {
     archive(tracker.state());
   } else {
     tracking::TrackerState state;

@@ -1,17 +1,13 @@
 // Seconds of wall time per named stage.
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace flowskin::tools {
+#include "common/stopwatch.h"
 
-/// Seconds since some fixed moment; never goes back.
-inline double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+namespace flowskin::tools {
 
 /// Adds up the time of each stage, in the order in which the stages first ran.
 class StageClock {

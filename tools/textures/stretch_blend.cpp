@@ -16,7 +16,7 @@ constexpr int kMostRings = 1000;   // of new vertices around known ones
 constexpr double kUnknown = -1;
 
 double area_of(const tracking::SurfaceMesh& mesh, const tracking::Triangle& triangle) {
-  return tracking::doubled_area_vector(mesh.positions, triangle).norm() / 2;
+  return doubled_area_vector(mesh.positions, triangle).norm() / 2;
 }
 
 /// Mean of each vertex and the corners of the triangles around it.

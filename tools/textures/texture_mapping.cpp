@@ -55,10 +55,10 @@ std::vector<Vec3> rest_normals(const tracking::SurfaceMesh& mesh, const std::vec
   std::vector<Vec3> normals;
   normals.reserve(mesh.triangles.size());
   for (const tracking::Triangle& t : mesh.triangles) {
-    const Vec3 normal = tracking::doubled_area_vector(places, t);
+    const Vec3 normal = doubled_area_vector(places, t);
     double longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, (places[t[k]] - places[t[(k + 1) % 3]]).squaredNorm());
-    normals.push_back(normal.norm() > 1e-9 * longest ? normal : tracking::doubled_area_vector(mesh.positions, t));
+    normals.push_back(normal.norm() > 1e-9 * longest ? normal : doubled_area_vector(mesh.positions, t));
   }
   return normals;
 }

@@ -11,7 +11,7 @@ std::vector<Vec3> moved(const std::vector<Vec3>& positions, double step, const s
 
 }  // namespace
 
-void advect_step(const VelocityMethod& method, const MeshTopology& topology, Integrator integrator,
+void advect_step(const VelocityMethod& method, const MeshAdjacency& topology, Integrator integrator,
                  const MetaballField& field_now, const FieldAt& field_at, double time, double step,
                  const std::vector<Vec3>& first_velocity, std::vector<Vec3>& positions) {
   std::vector<Vec3> k1 = first_velocity;

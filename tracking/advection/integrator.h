@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tracking/field/metaball_field.h"
-#include "tracking/mesh/topology.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/velocity_method.h"
 
 namespace flowskin::tracking {
@@ -19,7 +19,7 @@ using FieldAt = std::function<MetaballField(double)>;
 /// @param field_now the field at `time`
 /// @param first_velocity where not empty, the method's velocity at the given positions and time, known already (m/s)
 /// @param positions the vertices (m), one a vertex of the mesh; moved.
-void advect_step(const VelocityMethod& method, const MeshTopology& topology, Integrator integrator,
+void advect_step(const VelocityMethod& method, const MeshAdjacency& topology, Integrator integrator,
                  const MetaballField& field_now, const FieldAt& field_at, double time, double step,
                  const std::vector<Vec3>& first_velocity, std::vector<Vec3>& positions);
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "common/quantile.h"
 #include "tracking/mesh/point_tree.h"
-#include "tracking/quantile.h"
 
 namespace flowskin::tracking {
 namespace {

@@ -19,13 +19,13 @@ constexpr int kCollapsePasses = 4;
 constexpr int kFlipPasses = 3;
 constexpr double kLargestVolumeChange = 0.05;
 
-MeshTopology topology_of(const SurfaceGeometry& surface) {
-  return build_topology(static_cast<int>(surface.positions.size()), surface.triangles);
+MeshAdjacency topology_of(const SurfaceGeometry& surface) {
+  return build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles);
 }
 
 // Collapses edges below the limit, the shortest first. Returns how many.
 int collapse_short_edges(double shortest, double longest, SurfaceGeometry& surface) {
-  const MeshTopology topology = topology_of(surface);
+  const MeshAdjacency topology = topology_of(surface);
   const std::vector<int> order = edges_by_length(topology, surface.positions, EdgeOrder::shortest_first,
                                                  [&](int, double length) { return length < shortest; });
   const double volume = kLargestCollapse * longest * longest * longest;
@@ -41,7 +41,7 @@ int collapse_short_edges(double shortest, double longest, SurfaceGeometry& surfa
 
 void flip_towards_delaunay(SurfaceGeometry& surface) {
   for (int pass = 0; pass < kFlipPasses; ++pass) {
-    const MeshTopology topology = topology_of(surface);
+    const MeshAdjacency topology = topology_of(surface);
     EditableMesh mesh(surface.positions, surface.triangles);
     int count = 0;
     for (const auto& [a, b] : topology.edges) {

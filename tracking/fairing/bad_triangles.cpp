@@ -22,7 +22,7 @@ bool is_degenerate(const Triangle& triangle, const std::vector<Vec3>& positions)
 }
 
 std::vector<int> bad_triangles(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                               const MeshTopology& topology, const std::vector<Vec3>& normals) {
+                               const MeshAdjacency& topology, const std::vector<Vec3>& normals) {
   std::vector<int> bad;
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     if (is_degenerate(triangles[t], positions) || is_inverted(triangles[t], positions, normals)) bad.push_back(t);

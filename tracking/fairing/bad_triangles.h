@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tracking/mesh/topology.h"
+#include "tracking/mesh/adjacency.h"
 
 namespace flowskin::tracking {
 
@@ -13,6 +13,6 @@ bool is_degenerate(const Triangle& triangle, const std::vector<Vec3>& positions)
 /// Triangles without area, inside out, or folded onto a neighbour. Ascending.
 /// @param normals outward normals of the field at the vertices
 std::vector<int> bad_triangles(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                               const MeshTopology& topology, const std::vector<Vec3>& normals);
+                               const MeshAdjacency& topology, const std::vector<Vec3>& normals);
 
 }  // namespace flowskin::tracking

@@ -52,7 +52,7 @@ Vec2 step_to_equilibrium(const std::vector<Spring>& springs, double scale) {
 // The rings of a mesh with its vertices numbered along the curve of the neighbourhoods, so that what an iteration
 // reads lies side by side in memory. Springs keep their order within a ring; each end of an edge has its own.
 struct SpringsInOrder {
-  SpringsInOrder(const MeshTopology& mesh, const std::vector<double>& lengths, const Neighborhoods& neighborhoods) {
+  SpringsInOrder(const MeshAdjacency& mesh, const std::vector<double>& lengths, const Neighborhoods& neighborhoods) {
     topology.neighbor_begin.reserve(neighborhoods.order().size() + 1);
     topology.neighbor_begin.push_back(0);
     topology.neighbors.reserve(mesh.neighbors.size());
@@ -65,7 +65,7 @@ struct SpringsInOrder {
       topology.neighbor_begin.push_back(static_cast<int>(topology.neighbors.size()));
     }
   }
-  MeshTopology topology;             // the rings alone
+  MeshAdjacency topology;            // the rings alone
   std::vector<double> rest_lengths;  // m
 };
 
@@ -103,13 +103,13 @@ Vec3 fairing_move(const SpringMesh& mesh, int vertex, const Vec3& normal, const 
   return plane * move;
 }
 
-void fair(const MetaballField& field, const MeshTopology& topology, const std::vector<double>& rest_lengths,
+void fair(const MetaballField& field, const MeshAdjacency& topology, const std::vector<double>& rest_lengths,
           const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions) {
   fair(Neighborhoods(field, positions, usual_slack(field.settings())), topology, rest_lengths, settings, confidence,
        positions);
 }
 
-void fair(const Neighborhoods& neighborhoods, const MeshTopology& topology, const std::vector<double>& rest_lengths,
+void fair(const Neighborhoods& neighborhoods, const MeshAdjacency& topology, const std::vector<double>& rest_lengths,
           const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions) {
   const double longest_step = default_projection(neighborhoods.field().settings()).max_step;
   const SpringsInOrder springs(topology, rest_lengths, neighborhoods);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tracking/advection/projection.h"
-#include "tracking/mesh/topology.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/confidence.h"
 
 namespace flowskin::tracking {
@@ -25,10 +25,10 @@ struct FairingSettings {
 ///   plane (the paper projects them, which shortens them on a curved surface), so that a mesh whose edges all have
 ///   their rest lengths does not move.
 /// @param positions on the surface, or near it.
-void fair(const MetaballField& field, const MeshTopology& topology, const std::vector<double>& rest_lengths,
+void fair(const MetaballField& field, const MeshAdjacency& topology, const std::vector<double>& rest_lengths,
           const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions);
 /// The same with the neighbourhoods of the positions, or of places near them; best with the usual slack.
-void fair(const Neighborhoods& neighborhoods, const MeshTopology& topology, const std::vector<double>& rest_lengths,
+void fair(const Neighborhoods& neighborhoods, const MeshAdjacency& topology, const std::vector<double>& rest_lengths,
           const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions);
 
 /// How neighbours come into the tangent plane of a vertex: projected, or turned at their distance.
@@ -36,7 +36,7 @@ enum class Laying { projected, turned };
 
 /// The springs of a mesh.
 struct SpringMesh {
-  const MeshTopology& topology;
+  const MeshAdjacency& topology;
   const std::vector<double>& rest_lengths;  ///< One an edge (m).
   Laying laying = Laying::projected;
   double stiffness = 0.3;  ///< As in FairingSettings.

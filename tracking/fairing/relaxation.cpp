@@ -18,7 +18,7 @@ constexpr double kRidge = 0.05;  // slope of the volume against the normal
 constexpr int kTakeBackRounds = 8;
 
 // Six times the derivative of the enclosed volume by the position of a vertex.
-Vec3 volume_gradient(int vertex, const MeshTopology& topology, const std::vector<Triangle>& triangles,
+Vec3 volume_gradient(int vertex, const MeshAdjacency& topology, const std::vector<Triangle>& triangles,
                      const std::vector<Vec3>& positions) {
   Vec3 sum = Vec3::Zero();
   for (int t : topology.star(vertex)) {
@@ -40,7 +40,7 @@ Vec3 along_ridge(const Vec3& move, const Vec3& growth, const Vec3& normal) {
 }
 
 // Where a vertex would go, before projection.
-Vec3 relaxed_position(int vertex, const MeshTopology& topology, const std::vector<Triangle>& triangles,
+Vec3 relaxed_position(int vertex, const MeshAdjacency& topology, const std::vector<Triangle>& triangles,
                       const std::vector<Vec3>& positions, const Vec3& normal, Ridges ridges) {
   const Vec3& x = positions[vertex];
   Vec3 mean = Vec3::Zero();
@@ -59,7 +59,7 @@ Vec3 relaxed_position(int vertex, const MeshTopology& topology, const std::vecto
 }
 
 // The triangles that move with these vertices, ascending.
-std::vector<int> triangles_at(const std::vector<int>& vertices, const MeshTopology& topology) {
+std::vector<int> triangles_at(const std::vector<int>& vertices, const MeshAdjacency& topology) {
   std::vector<int> found;
   for (int vertex : vertices) {
     for (int t : topology.star(vertex)) found.push_back(t);
@@ -97,7 +97,7 @@ bool is_inverted(const Triangle& triangle, const std::vector<Vec3>& positions, c
   return !(largest > kInvertedCosine * area.norm());
 }
 
-void relax(const MetaballField& field, const ProjectionSettings& projection, const MeshTopology& topology,
+void relax(const MetaballField& field, const ProjectionSettings& projection, const MeshAdjacency& topology,
            const std::vector<Triangle>& triangles, int iterations, const std::vector<int>& vertices,
            std::vector<Vec3>& positions, std::vector<Vec3>& normals, Ridges ridges) {
   std::vector<int> moving = vertices;

@@ -10,8 +10,8 @@ constexpr int kRounds = 4;
 constexpr int kRings = 2;
 constexpr int kRelaxations = 5;
 
-std::vector<int> surroundings(const std::vector<int>& failed, const std::vector<int>& bad, const MeshTopology& topology,
-                              const std::vector<Triangle>& triangles) {
+std::vector<int> surroundings(const std::vector<int>& failed, const std::vector<int>& bad,
+                              const MeshAdjacency& topology, const std::vector<Triangle>& triangles) {
   std::vector<char> marked(topology.vertex_count(), 0);
   for (int vertex : failed) marked[vertex] = 1;
   for (int t : bad) {
@@ -33,7 +33,7 @@ std::vector<int> surroundings(const std::vector<int>& failed, const std::vector<
 
 }  // namespace
 
-void repair(const MetaballField& field, const ProjectionSettings& settings, const MeshTopology& topology,
+void repair(const MetaballField& field, const ProjectionSettings& settings, const MeshAdjacency& topology,
             const std::vector<Triangle>& triangles, std::vector<Vec3>& positions, Projection& projection) {
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<int> bad = bad_triangles(positions, triangles, topology, projection.normals);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/hilbert.h"
 #include "tracking/field/field_parts.h"
-#include "tracking/field/hilbert.h"
 
 namespace flowskin::tracking {
 namespace {

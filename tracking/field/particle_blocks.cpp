@@ -6,7 +6,7 @@
 #include <nanoflann.hpp>
 #include <utility>
 
-#include "tracking/field/hilbert.h"
+#include "common/hilbert.h"
 
 namespace flowskin::tracking {
 namespace {

@@ -4,9 +4,9 @@
 #include <limits>
 #include <unordered_map>
 
-#include "tracking/mesh/closest_point.h"
+#include "common/closest_point.h"
+#include "common/quantile.h"
 #include "tracking/mesh/mesh_measures.h"
-#include "tracking/quantile.h"
 
 namespace flowskin::tracking {
 namespace {

@@ -16,7 +16,7 @@ std::vector<int> euler_of_components(int vertex_count, const std::vector<Triangl
   for (int component : components.of_vertex) {
     if (component >= 0) ++euler[component];
   }
-  for (const auto& edge : build_topology(vertex_count, triangles).edges) --euler[components.of_vertex[edge[0]]];
+  for (const auto& edge : build_adjacency(vertex_count, triangles).edges) --euler[components.of_vertex[edge[0]]];
   for (const Triangle& triangle : triangles) ++euler[components.of_vertex[triangle[0]]];
   return euler;
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "tracking/mesh/topology.h"
+#include "tracking/mesh/adjacency.h"
 
 namespace flowskin::tracking {
 
@@ -13,7 +13,7 @@ enum class EdgeOrder { shortest_first, longest_first };
 /// The numbers of the edges for which condition(edge, length in m) holds, by length, then by number: the outcome of
 /// what is done to them does not depend on chance.
 template <class Condition>
-std::vector<int> edges_by_length(const MeshTopology& topology, const std::vector<Vec3>& positions, EdgeOrder order,
+std::vector<int> edges_by_length(const MeshAdjacency& topology, const std::vector<Vec3>& positions, EdgeOrder order,
                                  const Condition& condition) {
   const std::vector<double> lengths = edge_lengths(topology, positions);
   std::vector<int> edges;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tracking/mesh/closest_point.h"
+#include "common/closest_point.h"
 #include "tracking/mesh/mesh_measures.h"
 
 namespace flowskin::tracking {

@@ -107,7 +107,7 @@ void check_edges(const std::vector<Triangle>& triangles, std::vector<std::string
 }
 
 // Walks from triangle to triangle over the edges at the vertex; a single fan is reached as a whole.
-bool single_fan(int vertex, const MeshTopology& topology, const std::vector<Triangle>& triangles) {
+bool single_fan(int vertex, const MeshAdjacency& topology, const std::vector<Triangle>& triangles) {
   const auto star = topology.star(vertex);
   std::vector<char> reached(star.size(), 0);
   std::vector<std::size_t> open{0};
@@ -134,7 +134,7 @@ bool single_fan(int vertex, const MeshTopology& topology, const std::vector<Tria
 }
 
 void check_vertices(int vertex_count, const std::vector<Triangle>& triangles, std::vector<std::string>& problems) {
-  const MeshTopology topology = build_topology(vertex_count, triangles);
+  const MeshAdjacency topology = build_adjacency(vertex_count, triangles);
   Fault unreferenced("unreferenced vertices");
   Fault pinched("vertices where parts of the surface only touch (not two-manifold)");
   for (int vertex = 0; vertex < vertex_count; ++vertex) {

@@ -86,7 +86,7 @@ MeshComponents mesh_components(const std::vector<Vec3>& positions, const std::ve
 
 int euler_characteristic(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
   const int vertices = static_cast<int>(positions.size());
-  const MeshTopology topology = build_topology(vertices, triangles);
+  const MeshAdjacency topology = build_adjacency(vertices, triangles);
   return vertices - static_cast<int>(topology.edges.size()) + static_cast<int>(triangles.size());
 }
 
@@ -94,7 +94,7 @@ MeshQuality mesh_quality(const std::vector<Vec3>& positions, const std::vector<T
   MeshQuality quality;
   if (triangles.empty()) return quality;
   const std::vector<double> lengths =
-      edge_lengths(build_topology(static_cast<int>(positions.size()), triangles), positions);
+      edge_lengths(build_adjacency(static_cast<int>(positions.size()), triangles), positions);
   quality.shortest_edge = *std::min_element(lengths.begin(), lengths.end());
   quality.longest_edge = *std::max_element(lengths.begin(), lengths.end());
   quality.mean_edge = std::accumulate(lengths.begin(), lengths.end(), 0.0) / static_cast<double>(lengths.size());
@@ -131,7 +131,7 @@ double share_of_angles_above(const std::vector<double>& smallest_angles, double 
 
 double share_of_edges_within(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                              double shortest, double longest) {
-  return share_of(edge_lengths(build_topology(static_cast<int>(positions.size()), triangles), positions),
+  return share_of(edge_lengths(build_adjacency(static_cast<int>(positions.size()), triangles), positions),
                   [&](double length) { return length >= shortest && length <= longest; });
 }
 

@@ -1,10 +1,10 @@
 // Volume, area, components, triangle quality.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <vector>
 
-#include "tracking/mesh/topology.h"
+#include "common/triangle.h"
+#include "tracking/mesh/adjacency.h"
 
 namespace flowskin::tracking {
 
@@ -47,16 +47,6 @@ double share_of_angles_above(const std::vector<double>& smallest_angles, double 
 /// Share of the edges whose length is from `shortest` to `longest` (m); 1 where there are none.
 double share_of_edges_within(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                              double shortest, double longest);
-
-/// Twice the area vector of a triangle (m^2), along the outward normal.
-inline Vec3 doubled_area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
-  const Vec3& a = positions[triangle[0]];
-  return (positions[triangle[1]] - a).cross(positions[triangle[2]] - a);
-}
-
-inline Vec3 triangle_center(const std::vector<Vec3>& positions, const Triangle& triangle) {
-  return (positions[triangle[0]] + positions[triangle[1]] + positions[triangle[2]]) / 3;
-}
 
 /// Unit outward normals, weighted by area; zero where a vertex has no triangle with an area.
 std::vector<Vec3> vertex_normals(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "tracking/mesh/orientation.h"
+#include "common/orientation.h"
+#include "common/triangle_tree.h"
 #include "tracking/mesh/triangle_pair.h"
-#include "tracking/mesh/triangle_tree.h"
 
 namespace flowskin::tracking {
 namespace {

@@ -1,7 +1,6 @@
 // The tracked surface: an indexed triangle mesh whose vertices carry their material coordinates.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,7 +8,7 @@
 
 namespace flowskin::tracking {
 
-using Triangle = std::array<int, 3>;
+using flowskin::Triangle;
 
 /// Triangles counter-clockwise seen from outside; the vertex arrays have one entry a vertex.
 struct SurfaceMesh {

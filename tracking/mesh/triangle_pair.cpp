@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "tracking/mesh/orientation.h"
+#include "common/orientation.h"
 
 namespace flowskin::tracking {
 namespace {

@@ -15,8 +15,8 @@ namespace {
 
 using Edge = std::array<int, 2>;
 
-MeshTopology topology_of(const SurfaceMesh& mesh) {
-  return build_topology(static_cast<int>(mesh.positions.size()), mesh.triangles);
+MeshAdjacency topology_of(const SurfaceMesh& mesh) {
+  return build_adjacency(static_cast<int>(mesh.positions.size()), mesh.triangles);
 }
 
 // The target at each vertex, in edge lengths.
@@ -41,7 +41,7 @@ class Sizes {
 template <class Condition>
 std::vector<Edge> ordered_edges(const SurfaceMesh& mesh, const Sizes& sizes, EdgeOrder order,
                                 const Condition& condition) {
-  const MeshTopology topology = topology_of(mesh);
+  const MeshAdjacency topology = topology_of(mesh);
   std::vector<Edge> edges;
   for (int e : edges_by_length(topology, mesh.positions, order, [&](int edge, double length) {
          return condition(length / sizes.of(topology.edges[edge]));
@@ -160,7 +160,7 @@ double opposite_angle(const SurfaceMesh& mesh, int triangle, const Edge& edge) {
 
 // Edges whose opposite angles add up to more than 180 degrees and the slack, ascending.
 std::vector<Edge> edges_to_flip(double slack, const SurfaceMesh& mesh) {
-  const MeshTopology topology = topology_of(mesh);
+  const MeshAdjacency topology = topology_of(mesh);
   std::vector<char> wanted(topology.edges.size());
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t e = 0; e < std::ssize(wanted); ++e) {
@@ -199,7 +199,7 @@ std::vector<int> old_vertices(const std::vector<std::uint64_t>& old_ids, const s
   return old_of;
 }
 
-int edge_between(const MeshTopology& topology, int a, int b) {
+int edge_between(const MeshAdjacency& topology, int a, int b) {
   for (const auto& [other, edge] : topology.ring(a)) {
     if (other == b) return edge;
   }
@@ -243,9 +243,9 @@ std::vector<double> sizes_by_curvature(const MetaballField& field, const RemeshS
   return sizes;
 }
 
-std::vector<double> carry_rest_lengths(const std::vector<std::uint64_t>& old_ids, const MeshTopology& old_topology,
+std::vector<double> carry_rest_lengths(const std::vector<std::uint64_t>& old_ids, const MeshAdjacency& old_topology,
                                        const std::vector<double>& old_lengths, const SurfaceMesh& mesh,
-                                       const MeshTopology& topology, double edge_length) {
+                                       const MeshAdjacency& topology, double edge_length) {
   const std::vector<int> old_of = old_vertices(old_ids, mesh.ids);
   std::vector<double> lengths = edge_lengths(topology, mesh.positions);
 #pragma omp parallel for schedule(static)

@@ -6,8 +6,8 @@
 
 #include "tracking/advection/projection.h"
 #include "tracking/field/metaball_field.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/mesh/surface_mesh.h"
-#include "tracking/mesh/topology.h"
 
 namespace flowskin::tracking {
 
@@ -49,8 +49,8 @@ std::vector<double> sizes_by_curvature(const MetaballField& field, const RemeshS
 /// Rest lengths of the springs after remeshing: an edge that was there before keeps its own, a new one takes its
 /// present length, held between 0.7 and 1.3 target lengths.
 /// @param old_ids, old_topology, old_lengths vertex ids, edges and rest lengths before
-std::vector<double> carry_rest_lengths(const std::vector<std::uint64_t>& old_ids, const MeshTopology& old_topology,
+std::vector<double> carry_rest_lengths(const std::vector<std::uint64_t>& old_ids, const MeshAdjacency& old_topology,
                                        const std::vector<double>& old_lengths, const SurfaceMesh& mesh,
-                                       const MeshTopology& topology, double edge_length);
+                                       const MeshAdjacency& topology, double edge_length);
 
 }  // namespace flowskin::tracking

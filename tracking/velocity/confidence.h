@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tracking/mesh/topology.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/surface_point.h"
 
 namespace flowskin::tracking {

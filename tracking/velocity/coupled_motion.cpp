@@ -18,7 +18,7 @@ constexpr double kRidge = 1e-13;      // keeps the block of a lone vertex invert
 int chunk_count(std::size_t vertices) { return static_cast<int>((vertices + kChunk - 1) / kChunk); }
 
 // Number of the component of each vertex, components in the order of their lowest vertex.
-std::vector<int> components(const MeshTopology& topology, int count) {
+std::vector<int> components(const MeshAdjacency& topology, int count) {
   std::vector<int> of_vertex(count, -1), open;
   int next = 0;
   for (int seed = 0; seed < count; ++seed) {
@@ -48,7 +48,7 @@ class CoupledSystem {
   using Gradient = typename Motion::Gradient;
   using Field = std::vector<Vector>;  // one motion a vertex: velocity (radii/s) and gradient parameters (1/s)
 
-  CoupledSystem(const MetaballField& field, const MeshTopology& topology, const std::vector<Vec3>& positions,
+  CoupledSystem(const MetaballField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
                 const CouplingWeights& weights)
       : count_(static_cast<int>(positions.size())),
         topology_(topology.vertex_count() == count_ ? &topology : nullptr),
@@ -315,7 +315,7 @@ class CoupledSystem {
   }
 
   int count_;
-  const MeshTopology* topology_;  // null: no edges
+  const MeshAdjacency* topology_;  // null: no edges
   CouplingWeights weights_;
   std::vector<Vec3> places_;    // in radii
   std::vector<char> seen_;      // the field says something there
@@ -326,7 +326,7 @@ class CoupledSystem {
 }  // namespace
 
 template <class Motion>
-CouplingReport coupled_velocities(const MetaballField& field, const MeshTopology& topology,
+CouplingReport coupled_velocities(const MetaballField& field, const MeshAdjacency& topology,
                                   const std::vector<Vec3>& positions, const CouplingWeights& weights,
                                   const SolverLimits& limits, std::vector<Vec3>& velocities) {
   CoupledSystem<Motion> system(field, topology, positions, weights);
@@ -340,10 +340,10 @@ CouplingReport coupled_velocities(const MetaballField& field, const MeshTopology
   return report;
 }
 
-template CouplingReport coupled_velocities<RigidMotion>(const MetaballField&, const MeshTopology&,
+template CouplingReport coupled_velocities<RigidMotion>(const MetaballField&, const MeshAdjacency&,
                                                         const std::vector<Vec3>&, const CouplingWeights&,
                                                         const SolverLimits&, std::vector<Vec3>&);
-template CouplingReport coupled_velocities<AffineMotion>(const MetaballField&, const MeshTopology&,
+template CouplingReport coupled_velocities<AffineMotion>(const MetaballField&, const MeshAdjacency&,
                                                          const std::vector<Vec3>&, const CouplingWeights&,
                                                          const SolverLimits&, std::vector<Vec3>&);
 

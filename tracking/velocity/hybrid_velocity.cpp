@@ -62,7 +62,7 @@ Vec3 hybrid_velocity(const LocalField& field, const Vec3& x) {
 
 class HybridVelocity final : public VelocityMethod {
  public:
-  void evaluate(const MetaballField& field, const MeshTopology& /*topology*/, const std::vector<Vec3>& positions,
+  void evaluate(const MetaballField& field, const MeshAdjacency& /*topology*/, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
     require_particle_velocities(field, "hybrid");
     velocities.resize(positions.size());

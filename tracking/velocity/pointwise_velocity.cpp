@@ -4,7 +4,7 @@
 
 namespace flowskin::tracking {
 
-void PointwiseVelocity::evaluate(const MetaballField& field, const MeshTopology& /*topology*/,
+void PointwiseVelocity::evaluate(const MetaballField& field, const MeshAdjacency& /*topology*/,
                                  const std::vector<Vec3>& positions, std::vector<Vec3>& velocities) const {
   velocities.resize(positions.size());
   const FieldSettings& settings = field.settings();

@@ -10,7 +10,7 @@ namespace {
 
 class SimulationVelocity final : public VelocityMethod {
  public:
-  void evaluate(const MetaballField& field, const MeshTopology& /*topology*/, const std::vector<Vec3>& positions,
+  void evaluate(const MetaballField& field, const MeshAdjacency& /*topology*/, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
     require_particle_velocities(field, "simulation");
     velocities.resize(positions.size());

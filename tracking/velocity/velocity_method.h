@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tracking/field/metaball_field.h"
-#include "tracking/mesh/topology.h"
+#include "tracking/mesh/adjacency.h"
 
 namespace flowskin::tracking {
 
@@ -16,7 +16,7 @@ class VelocityMethod {
   virtual ~VelocityMethod() = default;
   /// `positions` are the vertices at the time of `field` (m); `velocities` gets one entry a vertex. Never NaN: where
   /// nothing is known, zero. An empty `topology` means vertices without neighbours.
-  virtual void evaluate(const MetaballField& field, const MeshTopology& topology, const std::vector<Vec3>& positions,
+  virtual void evaluate(const MetaballField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
                         std::vector<Vec3>& velocities) const = 0;
 };
 
