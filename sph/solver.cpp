@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "sph/solver_impl.h"
+#include "sph/solver/solver_impl.h"
 
 namespace flowskin::sph {
 

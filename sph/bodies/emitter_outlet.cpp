@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sph/setup/errors.h"
+
 namespace flowskin::sph {
 
 namespace {

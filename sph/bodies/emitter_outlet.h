@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sph/solver.h"
+#include "sph/setup/simulation_setup.h"
 
 namespace flowskin::sph {
 

@@ -7,6 +7,7 @@
 
 #include "sph/geometry/mesh_inside.h"
 #include "sph/neighbors/point_grid.h"
+#include "sph/setup/errors.h"
 
 namespace flowskin::sph {
 

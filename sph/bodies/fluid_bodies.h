@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sph/geometry/periodic_box.h"
-#include "sph/solver.h"
+#include "sph/setup/simulation_setup.h"
 
 namespace flowskin::sph {
 

@@ -1,6 +1,7 @@
 #include "sph/bodies/fluid_sinks.h"
 
 #include "sph/geometry/mesh_inside.h"
+#include "sph/setup/errors.h"
 
 namespace flowskin::sph {
 

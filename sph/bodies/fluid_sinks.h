@@ -1,7 +1,7 @@
 // Regions that remove the fluid which flows into them.
 #pragma once
 
-#include "sph/solver.h"
+#include "sph/setup/simulation_setup.h"
 
 namespace flowskin::sph {
 

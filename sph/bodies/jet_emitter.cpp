@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sph/setup/errors.h"
+
 namespace flowskin::sph {
 
 namespace {

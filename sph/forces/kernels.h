@@ -9,8 +9,8 @@
 #include <numbers>
 #include <type_traits>
 
-#include "sph/simd.h"
-#include "sph/solver.h"
+#include "sph/pairs/lanes.h"
+#include "sph/setup/settings.h"
 
 namespace flowskin::sph {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sph/forces/pair_forces.h"
-#include "sph/simd.h"
+#include "sph/pairs/lanes.h"
 
 namespace flowskin::sph {
 

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "sph/neighbors/neighbor_lists.h"
-#include "sph/particle_pack.h"
-#include "sph/solver.h"
+#include "sph/pairs/particle_pack.h"
+#include "sph/setup/settings.h"
 #include "sph/walls/wall_kernel.h"
 
 namespace flowskin::sph {

@@ -7,7 +7,7 @@
 
 #include "common/parallel.h"
 #include "sph/forces/kernels.h"
-#include "sph/simd.h"
+#include "sph/pairs/lanes.h"
 
 namespace flowskin::sph {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "common/parallel.h"
-#include "sph/simd.h"
+#include "sph/pairs/lanes.h"
 
 namespace flowskin::sph {
 

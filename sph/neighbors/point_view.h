@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sph/particle_pack.h"
+#include "sph/pairs/particle_pack.h"
 
 namespace flowskin::sph {
 

@@ -7,9 +7,9 @@
 
 #include "sph/forces/pair_forces.h"
 #include "sph/neighbors/neighbor_lists.h"
-#include "sph/particle_pack.h"
-#include "sph/simd.h"
-#include "sph/solver.h"
+#include "sph/pairs/lanes.h"
+#include "sph/pairs/particle_pack.h"
+#include "sph/setup/settings.h"
 
 namespace flowskin::sph {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sph/forces/pair_forces.h"
-#include "sph/solver.h"
+#include "sph/setup/fluid.h"
 
 namespace flowskin::sph {
 

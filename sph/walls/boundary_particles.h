@@ -5,8 +5,8 @@
 
 #include "sph/geometry/periodic_box.h"
 #include "sph/neighbors/point_clusters.h"
-#include "sph/particle_pack.h"
-#include "sph/solver.h"
+#include "sph/pairs/particle_pack.h"
+#include "sph/setup/simulation_setup.h"
 #include "sph/walls/boundary_sampling.h"
 #include "sph/walls/moving_wall.h"
 #include "sph/walls/thin_walls.h"

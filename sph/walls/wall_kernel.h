@@ -1,7 +1,7 @@
 // How walls act on the fluid: a kernel of their own, shorter than that of the fluid.
 #pragma once
 
-#include "sph/solver.h"
+#include "sph/setup/settings.h"
 
 namespace flowskin::sph {
 

@@ -87,7 +87,7 @@ TEST(Drop, CapillaryLimitOfTheStep) {
   const double h = setup.settings.spacing;  // half the support radius of two spacings
   const TimeStepReport report = solver.statistics().last_step;
   EXPECT_NEAR(report.capillary, 0.5 * std::sqrt(1000 * h * h * h / (2 * M_PI)), 1e-9);
-  EXPECT_EQ(report.limited_by, "capillary");
+  EXPECT_EQ(report.limited_by, TimeStepLimit::capillary);
   EXPECT_EQ(solver.statistics().steps_limited_by_capillary, 1U);
   setup.settings.surface_tension = 0;
   EXPECT_EQ(capillary_time(setup.settings), std::numeric_limits<double>::infinity());

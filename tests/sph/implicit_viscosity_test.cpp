@@ -7,7 +7,7 @@
 #include <Eigen/Dense>
 
 #include "sph/neighbors/hilbert_order.h"
-#include "sph/setup_checks.h"
+#include "sph/setup/automatic_values.h"
 #include "tests/sph/test_meshes.h"
 
 namespace flowskin::sph {

@@ -99,7 +99,7 @@ TEST(Solver, ReportsTheLimitsOfTheStep) {
   Solver acoustic(setup);
   acoustic.step();
   TimeStepReport report = acoustic.statistics().last_step;
-  EXPECT_EQ(report.limited_by, "acoustic");
+  EXPECT_EQ(report.limited_by, TimeStepLimit::acoustic);
   EXPECT_NEAR(report.acoustic, 0.4 * 0.1 / 20, 1e-6);
   EXPECT_NEAR(report.viscous, 0.5 * 0.125 * 0.01 / 1e-3, 1e-9);
   EXPECT_NEAR(report.force, 0.25 * std::sqrt(0.1 / 9.81), 1e-4);
@@ -109,19 +109,19 @@ TEST(Solver, ReportsTheLimitsOfTheStep) {
   setup.settings.viscosity = 10;
   Solver viscous(setup);
   viscous.step();
-  EXPECT_EQ(viscous.statistics().last_step.limited_by, "viscous");
+  EXPECT_EQ(viscous.statistics().last_step.limited_by, TimeStepLimit::viscous);
   setup.settings.viscosity = 0;
   setup.settings.gravity = {0, -2500, 0};
   Solver forced(setup);
   forced.step();
-  EXPECT_EQ(forced.statistics().last_step.limited_by, "force");
+  EXPECT_EQ(forced.statistics().last_step.limited_by, TimeStepLimit::force);
   setup.settings.gravity.setZero();
   setup.settings.max_time_step = 1e-5;
   Solver set(setup);
   set.step();
-  EXPECT_EQ(set.statistics().last_step.limited_by, "setting");
+  EXPECT_EQ(set.statistics().last_step.limited_by, TimeStepLimit::setting);
   EXPECT_EQ(set.step(1e-6), 1e-6);
-  EXPECT_EQ(set.statistics().last_step.limited_by, "output");
+  EXPECT_EQ(set.statistics().last_step.limited_by, TimeStepLimit::output);
 }
 
 TEST(Solver, ReachesTimesExactlyWithoutTinySteps) {

@@ -1,12 +1,9 @@
-// Checks of a set-up, and the values that settings leave to the solver.
+// The values that settings leave to the solver.
 #pragma once
 
-#include "sph/solver.h"
+#include "sph/setup/simulation_setup.h"
 
 namespace flowskin::sph {
-
-/// @throws SettingsError with the name of the first impossible setting, its value and what was expected
-void check_setup(const SimulationSetup& setup);
 
 /// Fills in max_speed, speed_of_sound and skin where they are 0, the greatest viscosity of all fluids, and the
 /// viscosity solver where it is automatic. The fastest flow expected is that of fluid which falls, without friction,

@@ -7,8 +7,7 @@
 
 #include "common/parallel.h"
 #include "sph/forces/pair_forces.h"
-#include "sph/particle_pack.h"
-#include "sph/solver.h"
+#include "sph/pairs/particle_pack.h"
 
 namespace flowskin::sph {
 

@@ -1,4 +1,4 @@
-#include "sph/solver_impl.h"
+#include "sph/solver/solver_impl.h"
 
 #include <omp.h>
 
@@ -11,7 +11,9 @@
 #include "common/stopwatch.h"
 #include "sph/bodies/fluid_bodies.h"
 #include "sph/bodies/fluid_sinks.h"
-#include "sph/setup_checks.h"
+#include "sph/setup/automatic_values.h"
+#include "sph/setup/errors.h"
+#include "sph/setup/setup_checks.h"
 #include "sph/viscosity/rheology.h"
 #include "sph/walls/boundary_sampling.h"
 
@@ -135,12 +137,7 @@ double SolverImpl::step(double limit) {
   if (lists_outdated()) rebuild_lists();
   evaluate_forces();
   finish_step(dt);
-  ++statistics_.steps;
-  const std::string& by = statistics_.last_step.limited_by;
-  if (by == "acoustic") ++statistics_.steps_limited_by_acoustic;
-  if (by == "viscous") ++statistics_.steps_limited_by_viscous;
-  if (by == "force") ++statistics_.steps_limited_by_force;
-  if (by == "capillary") ++statistics_.steps_limited_by_capillary;
+  statistics_.count_step();
   return dt;
 }
 
@@ -154,18 +151,18 @@ TimeStepReport SolverImpl::choose_step(double limit) const {
   report.force = greatest_acceleration_ > 0 ? settings_.force_cfl * std::sqrt(h / greatest_acceleration_) : infinity;
   report.capillary = settings_.capillary_cfl * capillary_time(settings_);
   report.step = infinity;
-  const auto apply = [&](double value, const char* name) {
+  const auto apply = [&](double value, TimeStepLimit limit_kind) {
     if (value < report.step) {
       report.step = value;
-      report.limited_by = name;
+      report.limited_by = limit_kind;
     }
   };
-  apply(report.acoustic, "acoustic");
-  apply(report.viscous, "viscous");
-  apply(report.force, "force");
-  apply(report.capillary, "capillary");
-  apply(settings_.max_time_step, "setting");
-  apply(limit, "output");
+  apply(report.acoustic, TimeStepLimit::acoustic);
+  apply(report.viscous, TimeStepLimit::viscous);
+  apply(report.force, TimeStepLimit::force);
+  apply(report.capillary, TimeStepLimit::capillary);
+  apply(settings_.max_time_step, TimeStepLimit::setting);
+  apply(limit, TimeStepLimit::output);
   return report;
 }
 

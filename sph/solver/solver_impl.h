@@ -5,14 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "common/state_archive.h"
 #include "sph/bodies/jet_emitter.h"
 #include "sph/forces/pair_forces.h"
 #include "sph/forces/surface_tension.h"
 #include "sph/geometry/periodic_box.h"
 #include "sph/neighbors/hilbert_order.h"
 #include "sph/neighbors/neighbor_lists.h"
-#include "sph/particle_arrays.h"
-#include "sph/solver.h"
+#include "sph/setup/simulation_setup.h"
+#include "sph/solver/particle_arrays.h"
+#include "sph/solver/statistics.h"
 #include "sph/viscosity/implicit_viscosity.h"
 #include "sph/walls/boundary_particles.h"
 #include "sph/walls/wall_drag.h"
