@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "scenes/scene_file.h"
+#include "common/errors.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -188,7 +188,7 @@ JsonNode parse_json(const std::string& text, const std::string& name) {
   const bool strict = true, ignore_comments = true;
   const bool ok =
       nlohmann::json::sax_parse(stream, &builder, nlohmann::json::input_format_t::json, strict, ignore_comments);
-  if (!ok) throw SceneError(builder.error.empty() ? name + ": this is not valid JSON" : builder.error);
+  if (!ok) throw InputError(builder.error.empty() ? name + ": this is not valid JSON" : builder.error);
   return std::move(builder.root);
 }
 

@@ -30,7 +30,7 @@ struct TextPlace {
 };
 TextPlace place_in_text(const std::string& text, std::size_t offset);
 
-/// @throws SceneError "name:line:column: ..." where the text is no JSON, holds a number too large for a double, or is
+/// @throws InputError "name:line:column: ..." where the text is no JSON, holds a number too large for a double, or is
 /// nested more than 64 levels deep.
 JsonNode parse_json(const std::string& text, const std::string& name);
 

@@ -204,7 +204,7 @@ void load_mesh(const Scene& scene, const MeshPlacement& placement, const std::st
   }
   try {
     mesh = place(read_obj(file), placement);
-  } catch (const SceneError& problem) {
+  } catch (const InputError& problem) {
     checker.require(false, list, i, "file", std::string("cannot be read: ") + problem.what());
   }
 }

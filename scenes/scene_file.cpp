@@ -10,14 +10,14 @@ namespace {
 
 std::string read_text(const std::filesystem::path& file) {
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) throw SceneError(file.string() + ": there is no such scene file");
+  if (!std::filesystem::exists(file, error)) throw InputError(file.string() + ": there is no such scene file");
   if (std::filesystem::is_directory(file, error)) {
-    throw SceneError(file.string() + ": this is a folder; expected a scene file (JSON)");
+    throw InputError(file.string() + ": this is a folder; expected a scene file (JSON)");
   }
   std::ifstream stream(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.is_open() || stream.bad())
-    throw SceneError(file.string() + ": the file cannot be read; is it yours to read?");
+    throw InputError(file.string() + ": the file cannot be read; is it yours to read?");
   return text;
 }
 

@@ -2,19 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "scenes/scene.h"
 
 namespace flowskin::scenes {
-
-/// Something is wrong with a scene file; the message names the file, the key and its place (line), what was expected
-/// and, for an unknown key or value, the nearest valid one.
-struct SceneError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// Names that the scene file may use but this library does not know, given by the program.
 struct SceneVocabulary {
@@ -30,7 +23,8 @@ struct SceneKey {
   std::string meaning;        ///< one sentence
 };
 
-/// @throws SceneError. Meshes that the scene names are read and placed.
+/// @throws InputError naming the file, the key and its place (line), what was expected and, for an unknown key or
+/// value, the nearest valid one. Meshes that the scene names are read and placed.
 Scene read_scene(const std::filesystem::path& file, const SceneVocabulary& vocabulary);
 /// The same from text; `name` stands for the file in messages, `directory` is where relative names start.
 Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& directory,

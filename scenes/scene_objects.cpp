@@ -1,5 +1,7 @@
 #include "scenes/scene_objects.h"
 
+#include "common/errors.h"
+
 namespace flowskin::scenes {
 namespace {
 
@@ -43,7 +45,7 @@ void Problems::throw_if_any() const {
     message += fmt::format("{}{}:{}:{}: {}", i > 0 ? "\n" : "", file_, place.line, place.column, sorted[i].second);
   }
   if (sorted.size() > max_lines) message += fmt::format("\n... and {} more", sorted.size() - max_lines);
-  throw SceneError(message);
+  throw InputError(message);
 }
 
 const JsonNode* find_path(const JsonNode& node, const std::string& path) {

@@ -19,7 +19,7 @@ class Problems {
   Problems(std::string file, const std::string& text) : file_(std::move(file)), text_(text) {}
   void add(std::size_t offset, const std::string& message) { list_.emplace_back(offset, message); }
   std::size_t count() const { return list_.size(); }
-  /// @throws SceneError with one line a problem, where there is any.
+  /// @throws InputError with one line a problem, where there is any.
   void throw_if_any() const;
 
  private:

@@ -1,43 +1,14 @@
-// What the writers and the renderer see of one frame.
+// What the program's parts say of frames, colours and small vectors, by short names.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include "scenes/sources/particle_source.h"
-#include "tracking/mesh/surface_mesh.h"
+#include "scenes/io/frames.h"
 
 namespace flowskin::tools {
 
-using Vec2f = Eigen::Vector2f;
+using scenes::Color;
+using scenes::ParticleFrame;
+using scenes::SurfaceFrame;
+using scenes::Vec2f;
 using Vec3f = Eigen::Vector3f;
-using Vec3 = Eigen::Vector3d;
-/// Red, green, blue, sRGB-encoded, 0 to 255.
-using Color = std::array<std::uint8_t, 3>;
-
-/// A surface dressed for output: all vertex arrays have one entry a vertex.
-struct SurfaceFrame {
-  double time = 0;  ///< s
-  tracking::SurfaceMesh mesh;
-  std::vector<Vec3> normals;                     ///< unit, outward
-  std::vector<Color> colors;                     ///< of the rest position
-  std::vector<Vec2f> vertex_uvs;                 ///< texture coordinates a vertex (no seams: see corner_uvs)
-  std::vector<std::array<Vec2f, 3>> corner_uvs;  ///< texture coordinates a triangle corner
-  /// A second texture for stretched places, or the solid one where there are no second coordinates; all may be empty.
-  std::vector<float> texture_blend;               ///< its share a vertex, 0 to 1
-  std::vector<Vec2f> vertex_uvs2;                 ///< its coordinates a vertex
-  std::vector<std::array<Vec2f, 3>> corner_uvs2;  ///< its coordinates a triangle corner
-  std::vector<Vec2f> confidence;  ///< how well the field determines the velocity: weak, strong direction; or empty
-  std::string texture_file;       ///< image's name beside the written files, for PLY readers; may be empty
-};
-
-/// Particles dressed for output.
-struct ParticleFrame {
-  scenes::ParticleState state;
-  std::vector<Color> colors;  ///< of the rest position
-  double radius = 0;          ///< m, for drawing
-};
 
 }  // namespace flowskin::tools

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/particle_columns.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -111,7 +111,7 @@ class CsvParser {
 
  private:
   [[noreturn]] void fail(std::size_t line, const std::string& message) const {
-    throw SceneError(fmt::format("{}, line {}: {}", name_, line, message));
+    throw InputError(fmt::format("{}, line {}: {}", name_, line, message));
   }
 
   /// The first line that is neither empty nor a remark; a remark that looks like names counts where no names follow.
@@ -119,7 +119,7 @@ class CsvParser {
     std::string remark;
     for (;;) {
       if (!lines_.next(line))
-        throw SceneError(name_ + ": there is no line of column names, such as x,y,z,vx,vy,vz,id; the file is empty");
+        throw InputError(name_ + ": there is no line of column names, such as x,y,z,vx,vy,vz,id; the file is empty");
       if (line.empty()) continue;
       if (line.front() != '#') break;
       remark = std::string(line.substr(1));

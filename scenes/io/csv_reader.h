@@ -12,7 +12,7 @@ namespace flowskin::scenes {
 /// tell which). Names and values may stand in double quotes; lines may end in LF or CR LF; empty lines and lines that
 /// start with # are left out, but names may stand behind a # as well. A column "time" gives the time of the file.
 /// @param name stands for the file in messages
-/// @throws SceneError naming the line and what was expected there.
+/// @throws InputError naming the line and what was expected there.
 ParticleTable parse_csv(std::string_view bytes, const std::string& name);
 
 }  // namespace flowskin::scenes

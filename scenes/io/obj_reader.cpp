@@ -9,10 +9,10 @@
 #include <sstream>
 #include <string_view>
 
+#include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/polygon.h"
 #include "scenes/io/read_bytes.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -59,7 +59,7 @@ void check_vertex_line(std::string_view line, const std::string& place) {
     std::string_view rest = word;
     double value = 0;
     if (!take_number(rest, value) || !rest.empty() || !std::isfinite(value))
-      throw SceneError(place + ": expected a finite number as " + axis + " of a vertex, found \"" +
+      throw InputError(place + ": expected a finite number as " + axis + " of a vertex, found \"" +
                        std::string(word.substr(0, 40)) + "\"");
   }
 }
@@ -70,7 +70,7 @@ void check_face_line(std::string_view line, const std::string& place) {
     int index = 0;
     const auto [end, error] = std::from_chars(vertex.data(), vertex.data() + vertex.size(), index);
     if (error != std::errc() || end != vertex.data() + vertex.size())
-      throw SceneError(place + ": expected a vertex index as corner of a face, found \"" +
+      throw InputError(place + ": expected a vertex index as corner of a face, found \"" +
                        std::string(word.substr(0, 40)) + "\"");
   }
 }
@@ -110,7 +110,7 @@ sph::TriangleMesh keep_referenced(const std::vector<Vec3>& positions, std::vecto
 sph::TriangleMesh read_obj(const std::filesystem::path& file) { return parse_obj(read_bytes(file), file.string()); }
 
 sph::TriangleMesh parse_obj(const std::string& text, const std::string& name) {
-  if (text.find('\0') != std::string::npos) throw SceneError(name + ": this is a binary file, no OBJ");
+  if (text.find('\0') != std::string::npos) throw InputError(name + ": this is a binary file, no OBJ");
   check_lines(text, name);
 
   tinyobj::callback_t callback;
@@ -120,24 +120,24 @@ sph::TriangleMesh parse_obj(const std::string& text, const std::string& name) {
   std::istringstream stream(text);
   std::string warning, error;
   const bool good = tinyobj::LoadObjWithCallback(stream, callback, &obj, nullptr, &warning, &error);
-  if (!obj.error.empty()) throw SceneError(name + ": " + obj.error);
-  if (!good) throw SceneError(name + ": not readable as OBJ: " + error);
+  if (!obj.error.empty()) throw InputError(name + ": " + obj.error);
+  if (!good) throw InputError(name + ": not readable as OBJ: " + error);
   if (obj.positions.empty())
-    throw SceneError(name + ": no vertices (lines \"v x y z\"): this is no OBJ, or it is empty");
+    throw InputError(name + ": no vertices (lines \"v x y z\"): this is no OBJ, or it is empty");
 
   const auto vertex_count = static_cast<int>(obj.positions.size());
   std::vector<std::array<int, 3>> triangles;
   for (std::size_t i = 0; i < obj.faces.size(); ++i) {
     for (const int vertex : obj.faces[i])
       if (vertex >= vertex_count)
-        throw SceneError(name + ": face " + std::to_string(i + 1) + " refers to vertex " + std::to_string(vertex + 1) +
+        throw InputError(name + ": face " + std::to_string(i + 1) + " refers to vertex " + std::to_string(vertex + 1) +
                          ", but there are only " + std::to_string(vertex_count));
     for (const auto& triangle : triangulate_polygon(obj.positions, obj.faces[i]))
       if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
         triangles.push_back(triangle);
   }
   if (triangles.empty())
-    throw SceneError(name + ": no triangles (lines \"f a b c\"): a surface was expected, not points or curves");
+    throw InputError(name + ": no triangles (lines \"f a b c\"): a surface was expected, not points or curves");
   return keep_referenced(obj.positions, std::move(triangles));
 }
 
@@ -145,9 +145,9 @@ sph::TriangleMesh place(sph::TriangleMesh mesh, const MeshPlacement& placement) 
   const std::string name = placement.file.empty() ? "mesh" : placement.file;
   const Vec3& scale = placement.scale;
   if (!scale.allFinite() || scale.cwiseAbs().minCoeff() == 0)
-    throw SceneError(name + ": scale must be finite and not 0 in any direction");
+    throw InputError(name + ": scale must be finite and not 0 in any direction");
   if (!placement.rotate.allFinite() || !placement.translate.allFinite())
-    throw SceneError(name + ": rotate and translate must be finite");
+    throw InputError(name + ": rotate and translate must be finite");
   const Vec3 angles = placement.rotate * (std::numbers::pi / 180);
   const Eigen::Matrix3d rotation =
       (Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *

@@ -9,7 +9,7 @@
 namespace flowskin::scenes {
 
 /// Polygons are triangulated; unreferenced vertices are dropped.
-/// @throws SceneError naming the file and what is wrong with it (missing, no triangles, bad index, not finite).
+/// @throws InputError naming the file and what is wrong with it (missing, no triangles, bad index, not finite).
 sph::TriangleMesh read_obj(const std::filesystem::path& file);
 /// The same from text in memory; `name` stands for the file in messages.
 sph::TriangleMesh parse_obj(const std::string& text, const std::string& name);

@@ -11,8 +11,8 @@
 #include <numeric>
 #include <utility>
 
+#include "common/errors.h"
 #include "scenes/io/ply_reader.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -29,12 +29,12 @@ const Names id_names = {"id", "ids", "particle_id", "particle_ids", "particleid"
 const Names radius_names = {"radius", "radii", "particle_radius", "pscale"};
 const Names density_names = {"density", "densities", "rho", "rhop"};
 
-/// @throws SceneError where two columns have the same plain name.
+/// @throws InputError where two columns have the same plain name.
 Columns columns_by_plain_name(const ParticleTable& table, const std::string& name) {
   Columns columns;
   for (const auto& [written, column] : table.columns) {
     if (!columns.emplace(plain_column_name(written), &column).second)
-      throw SceneError(fmt::format("{}: two columns are called \"{}\" (but for signs, case and units)", name,
+      throw InputError(fmt::format("{}: two columns are called \"{}\" (but for signs, case and units)", name,
                                    plain_column_name(written)));
   }
   return columns;
@@ -50,7 +50,7 @@ const Column* find_column(const Columns& columns, Names names) {
 using Triple = std::array<const Column*, 3>;
 
 /// Three columns such as vx vy vz, vel_x vel_y vel_z, velocity_0 velocity_1 velocity_2; null where they are not there.
-/// @throws SceneError where only some of the three are there.
+/// @throws InputError where only some of the three are there.
 Triple find_vector(const Columns& columns, Names names, const std::string& what, const std::string& name) {
   for (const std::string base : names) {
     for (const char* components : {"xyz", "012"}) {
@@ -65,7 +65,7 @@ Triple find_vector(const Columns& columns, Names names, const std::string& what,
         if (present == 3) return triple;
         // A lone "p0" or "v_x" may be anything; of the plain names and of two in three it is a slip.
         if (present == 2 || (present == 1 && joint[0] == '\0' && components[0] == 'x'))
-          throw SceneError(name + ": only some components of the " + what + " are there; x, y and z were expected");
+          throw InputError(name + ": only some components of the " + what + " are there; x, y and z were expected");
       }
     }
   }
@@ -80,7 +80,7 @@ std::vector<Vec3> vectors(const Triple& columns, std::vector<Vec3> fallback, con
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i] = Vec3((*columns[0])[i], (*columns[1])[i], (*columns[2])[i]);
     if (!result[i].allFinite())
-      throw SceneError(name + ", particle " + std::to_string(i + 1) + ": the " + what + " is not finite");
+      throw InputError(name + ", particle " + std::to_string(i + 1) + ": the " + what + " is not finite");
   }
   return result;
 }
@@ -95,7 +95,7 @@ std::vector<std::uint64_t> particle_ids(const Column* column, std::size_t count,
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const double value = (*column)[i];
     if (!(value >= 0) || value != std::floor(value) || value > largest_exact)
-      throw SceneError(name + ", particle " + std::to_string(i + 1) + ": its id is no whole number from 0 to 2^53");
+      throw InputError(name + ", particle " + std::to_string(i + 1) + ": its id is no whole number from 0 to 2^53");
     ids[i] = static_cast<std::uint64_t>(value);
   }
   return ids;
@@ -109,7 +109,7 @@ std::vector<T> reordered(const std::vector<T>& values, const std::vector<std::si
   return result;
 }
 
-/// @throws SceneError where an id is there twice.
+/// @throws InputError where an id is there twice.
 void sort_by_id(ParticleState& state, const std::string& name) {
   std::vector<std::size_t> order(state.ids.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -118,7 +118,7 @@ void sort_by_id(ParticleState& state, const std::string& name) {
   state.ids = reordered(state.ids, order);
   const auto twice = std::adjacent_find(state.ids.begin(), state.ids.end());
   if (twice != state.ids.end())
-    throw SceneError(name + ": two particles have the id " + std::to_string(*twice) +
+    throw InputError(name + ": two particles have the id " + std::to_string(*twice) +
                      ": every particle needs its own, the same in every file of a sequence");
   state.positions = reordered(state.positions, order);
   state.velocities = reordered(state.velocities, order);
@@ -170,7 +170,7 @@ ParticleFile particles_from_table(const ParticleTable& table, const std::string&
   if (place[0] == nullptr) {
     std::vector<std::string> names;
     for (const auto& column : table.columns) names.push_back(column.first);
-    throw SceneError(
+    throw InputError(
         fmt::format("{}: particles need the columns x, y and z; {}", name,
                     names.empty() ? "there are none" : fmt::format("there are: {}", fmt::join(names, ", "))));
   }
@@ -193,7 +193,7 @@ ParticleFile particles_from_table(const ParticleTable& table, const std::string&
   state.densities = densities != nullptr ? *densities : Column(table.count, 0.0);
   for (std::size_t i = 0; i < state.densities.size(); ++i)
     if (!std::isfinite(state.densities[i]))
-      throw SceneError(name + ", particle " + std::to_string(i + 1) + ": the density is not finite");
+      throw InputError(name + ", particle " + std::to_string(i + 1) + ": the density is not finite");
   if (file.has_ids) sort_by_id(state, name);
   return file;
 }

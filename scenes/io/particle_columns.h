@@ -24,7 +24,7 @@ std::string plain_column_name(const std::string& name);
 
 /// docs/track.md lists the names that are understood.
 /// @param name stands for the file in messages
-/// @throws SceneError where positions are missing, a value is not finite, or an id is no whole number or there twice.
+/// @throws InputError where positions are missing, a value is not finite, or an id is no whole number or there twice.
 ParticleFile particles_from_table(const ParticleTable& table, const std::string& name);
 
 }  // namespace flowskin::scenes

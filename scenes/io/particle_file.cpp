@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 
+#include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/csv_reader.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/io/read_bytes.h"
 #include "scenes/io/vtk_reader.h"
 #include "scenes/io/vtp_reader.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -30,7 +30,7 @@ bool is_particle_extension(std::string extension) {
 std::string particle_extensions() { return fmt::format("{}", fmt::join(extensions, ", ")); }
 
 ParticleTable parse_particle_table(std::string_view bytes, const std::string& name) {
-  if (bytes.empty()) throw SceneError(name + ": the file is empty");
+  if (bytes.empty()) throw InputError(name + ": the file is empty");
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return table_from_ply(parse_ply(bytes, name));
   if (bytes.starts_with("# vtk DataFile")) return parse_vtk(bytes, name);
   std::string_view start = bytes.substr(0, 4096);
@@ -38,7 +38,7 @@ ParticleTable parse_particle_table(std::string_view bytes, const std::string& na
   skip_space(start);
   if (start.starts_with("<")) return parse_vtp(bytes, name);
   if (start.find('\0') != std::string_view::npos)
-    throw SceneError(name +
+    throw InputError(name +
                      ": these are no particles that FlowSkin can read; expected CSV, PLY, VTK or VTP (see "
                      "docs/track.md)");
   return parse_csv(bytes, name);
@@ -51,7 +51,7 @@ ParticleTable read_particle_table(const std::filesystem::path& file) {
 ParticleFile read_particles(const std::filesystem::path& file) {
   const ParticleTable table = read_particle_table(file);
   if (table.polygons > 0)
-    throw SceneError(
+    throw InputError(
         fmt::format("{}: this is a mesh with {} polygons, not particles; give the particles it was made of",
                     file.string(), table.polygons));
   ParticleFile particles = particles_from_table(table, file.string());

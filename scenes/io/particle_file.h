@@ -17,11 +17,11 @@ std::string particle_extensions();
 
 /// PLY, legacy VTK or VTK XML by what the file starts with; everything else that is text counts as CSV.
 /// @param name stands for the file in messages
-/// @throws SceneError naming the file, the place in it, and what was expected.
+/// @throws InputError naming the file, the place in it, and what was expected.
 ParticleTable parse_particle_table(std::string_view bytes, const std::string& name);
 ParticleTable read_particle_table(const std::filesystem::path& file);
 
-/// The particles of a file. @throws SceneError, also where the file holds a mesh.
+/// The particles of a file. @throws InputError, also where the file holds a mesh.
 ParticleFile read_particles(const std::filesystem::path& file);
 
 }  // namespace flowskin::scenes

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "common/errors.h"
 #include "common/number_text.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -68,7 +68,7 @@ class HeaderParser {
 
  private:
   [[noreturn]] void fail(const std::string& message) const {
-    throw SceneError(name_ + ", line " + std::to_string(line_number_) + " of the header: " + message);
+    throw InputError(name_ + ", line " + std::to_string(line_number_) + " of the header: " + message);
   }
 
   std::string_view take_line() {
@@ -157,7 +157,7 @@ std::size_t size_of(PlyType type) {
 }
 
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
-  if (bytes.substr(0, 3) != "ply") throw SceneError(name + ": this is no PLY file: it does not start with \"ply\"");
+  if (bytes.substr(0, 3) != "ply") throw InputError(name + ": this is no PLY file: it does not start with \"ply\"");
   return HeaderParser(bytes, name).parse();
 }
 

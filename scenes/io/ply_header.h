@@ -35,7 +35,7 @@ struct PlyHeader {
 };
 
 /// Lines may end in LF or CR LF. `name` stands for the file in messages.
-/// @throws SceneError naming the line of the header and what was expected.
+/// @throws InputError naming the line of the header and what was expected.
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name);
 
 }  // namespace flowskin::scenes

@@ -8,10 +8,10 @@
 #include <limits>
 #include <string_view>
 
+#include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/ply_header.h"
 #include "scenes/io/read_bytes.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -127,7 +127,7 @@ class PlyDataReader {
     for (const PlyElement& element : header.elements) {
       if (element.properties.empty()) continue;
       if (element.count > cursor_.room_for(element))
-        throw SceneError(name_ + ": the header promises " + std::to_string(element.count) + " of \"" + element.name +
+        throw InputError(name_ + ": the header promises " + std::to_string(element.count) + " of \"" + element.name +
                          "\", but the file is too short for them: it is truncated, or the header is wrong");
       read_element(element);
     }
@@ -145,7 +145,7 @@ class PlyDataReader {
         for (; item < element.count; ++item) read_item(element);
       }
     } catch (const DataError& error) {
-      throw SceneError(name_ + ", " + element.name + " " + std::to_string(item + 1) + " of " +
+      throw InputError(name_ + ", " + element.name + " " + std::to_string(item + 1) + " of " +
                        std::to_string(element.count) + ": " + error.what);
     }
   }
@@ -211,7 +211,7 @@ class PlyDataReader {
     for (const auto& triangle : ply_.triangles)
       for (const int vertex : triangle)
         if (static_cast<std::size_t>(vertex) >= ply_.vertex_count)
-          throw SceneError(name_ + ": a face refers to vertex " + std::to_string(vertex) + ", but there are only " +
+          throw InputError(name_ + ": a face refers to vertex " + std::to_string(vertex) + ", but there are only " +
                            std::to_string(ply_.vertex_count) + " (counting from 0)");
   }
 
@@ -228,7 +228,7 @@ PlyFile parse_ply(std::string_view bytes, const std::string& name) {
   const PlyHeader header = parse_ply_header(bytes, name);
   const bool has_vertices = std::any_of(header.elements.begin(), header.elements.end(),
                                         [](const PlyElement& element) { return element.name == "vertex"; });
-  if (!has_vertices) throw SceneError(name + ": there is no element \"vertex\"");
+  if (!has_vertices) throw InputError(name + ": there is no element \"vertex\"");
   const std::string_view data = bytes.substr(header.data_start);
   PlyFile ply;
   if (header.format == PlyFormat::ascii) {

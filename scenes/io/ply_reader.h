@@ -22,7 +22,7 @@ struct PlyFile {
   std::vector<std::string> comments;
 };
 
-/// @throws SceneError naming the file and what is wrong with it (not a PLY, truncated, bad index, ...).
+/// @throws InputError naming the file and what is wrong with it (not a PLY, truncated, bad index, ...).
 PlyFile read_ply(const std::filesystem::path& file);
 /// The same from bytes in memory; `name` stands for the file in messages.
 PlyFile parse_ply(std::string_view bytes, const std::string& name);

@@ -6,17 +6,17 @@
 #include <memory>
 #include <system_error>
 
-#include "scenes/scene_file.h"
+#include "common/errors.h"
 
 namespace flowskin::scenes {
 
 std::string read_bytes(const std::filesystem::path& file) {
   const std::string name = file.string();
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) throw SceneError(name + ": there is no such file");
-  if (std::filesystem::is_directory(file, ignored)) throw SceneError(name + ": this is a folder, a file was expected");
+  if (!std::filesystem::exists(file, ignored)) throw InputError(name + ": there is no such file");
+  if (std::filesystem::is_directory(file, ignored)) throw InputError(name + ": this is a folder, a file was expected");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(name.c_str(), "rb"), &std::fclose);
-  if (!stream) throw SceneError(name + ": cannot be opened: " + std::generic_category().message(errno));
+  if (!stream) throw InputError(name + ": cannot be opened: " + std::generic_category().message(errno));
   std::string bytes;
   // The size is only a first guess: pipes and files under /proc have none.
   const std::uintmax_t size = std::filesystem::file_size(file, ignored);
@@ -25,7 +25,7 @@ std::string read_bytes(const std::filesystem::path& file) {
   while (const std::size_t count = std::fread(block.data(), 1, block.size(), stream.get()))
     bytes.append(block.data(), count);
   if (std::ferror(stream.get()) != 0)
-    throw SceneError(name + ": cannot be read: " + std::generic_category().message(errno));
+    throw InputError(name + ": cannot be read: " + std::generic_category().message(errno));
   return bytes;
 }
 

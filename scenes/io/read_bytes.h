@@ -6,7 +6,7 @@
 
 namespace flowskin::scenes {
 
-/// The bytes of `file`. @throws SceneError where it is missing, a directory, or cannot be read.
+/// The bytes of `file`. @throws InputError where it is missing, a directory, or cannot be read.
 std::string read_bytes(const std::filesystem::path& file);
 
 }  // namespace flowskin::scenes

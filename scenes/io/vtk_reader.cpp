@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/number_type.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -75,9 +75,9 @@ class VtkParser {
   enum class Target { nothing, points, field };
 
   [[noreturn]] void fail(const std::string& message) const {
-    if (binary_ && has_points_) throw SceneError(fmt::format("{}, byte {}: {}", name_, at_, message));
+    if (binary_ && has_points_) throw InputError(fmt::format("{}, byte {}: {}", name_, at_, message));
     const auto end = bytes_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, bytes_.size()));
-    throw SceneError(fmt::format("{}, line {}: {}", name_, 1 + std::count(bytes_.begin(), end, '\n'), message));
+    throw InputError(fmt::format("{}, line {}: {}", name_, 1 + std::count(bytes_.begin(), end, '\n'), message));
   }
 
   bool skip_blank() {

@@ -12,7 +12,7 @@ namespace flowskin::scenes {
 /// STRUCTURED_GRID, ASCII or BINARY (big endian); attributes of cells are passed over. Vectors become columns name_0,
 /// name_1, name_2. The field arrays TIME or TimeValue give the time.
 /// @param name stands for the file in messages
-/// @throws SceneError naming the line (or, in binary data, the byte) and what was expected there.
+/// @throws InputError naming the line (or, in binary data, the byte) and what was expected there.
 ParticleTable parse_vtk(std::string_view bytes, const std::string& name);
 
 }  // namespace flowskin::scenes

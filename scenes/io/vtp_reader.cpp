@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/number_type.h"
 #include "scenes/io/vtk_data.h"
 #include "scenes/io/xml_scanner.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -192,7 +192,7 @@ class VtpParser {
     }
   }
 
-  /// The array's numbers. @throws SceneError where there are not `count`.
+  /// The array's numbers. @throws InputError where there are not `count`.
   std::vector<double> numbers_of(const Array& array, std::uint64_t count) {
     if (formats_.find(array.format) == std::string::npos) formats_ += (formats_.empty() ? "" : ", ") + array.format;
     const auto fail = [&](const std::string& message) {

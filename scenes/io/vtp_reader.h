@@ -15,11 +15,11 @@ namespace flowskin::scenes {
 /// bytes, inline or appended, either byte order, plain or compressed by zlib. Vectors become columns name_0, name_1,
 /// name_2. The field array TimeValue gives the time.
 /// @param name stands for the file in messages
-/// @throws SceneError naming the line or the array and what was expected.
+/// @throws InputError naming the line or the array and what was expected.
 ParticleTable parse_vtp(std::string_view bytes, const std::string& name);
 
 /// Time (s) and file of every entry of a collection, in its order; names relative to the collection become those beside
-/// it. @throws SceneError where it is no collection, is empty, or an entry lacks its time or file.
+/// it. @throws InputError where it is no collection, is empty, or an entry lacks its time or file.
 std::vector<std::pair<double, std::filesystem::path>> parse_pvd(std::string_view bytes,
                                                                 const std::filesystem::path& file);
 

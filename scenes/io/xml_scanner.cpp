@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "scenes/scene_file.h"
+#include "common/errors.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -37,7 +37,7 @@ const std::string* XmlTag::find(std::string_view attribute) const {
 
 void XmlScanner::fail(std::size_t place, const std::string& message) const {
   const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(place, text_.size()));
-  throw SceneError(fmt::format("{}, line {}: {}", name_, 1 + std::count(text_.begin(), end, '\n'), message));
+  throw InputError(fmt::format("{}, line {}: {}", name_, 1 + std::count(text_.begin(), end, '\n'), message));
 }
 
 bool XmlScanner::next(XmlTag& tag) {

@@ -23,11 +23,11 @@ class XmlScanner {
  public:
   /// `name` stands for the file in messages; both must outlive the scanner.
   XmlScanner(std::string_view text, const std::string& name) : text_(text), name_(name) {}
-  /// The next tag; false at the end of the text. @throws SceneError naming the line, where a tag is not well formed.
+  /// The next tag; false at the end of the text. @throws InputError naming the line, where a tag is not well formed.
   bool next(XmlTag& tag);
   /// Offset from which the next tag is looked for.
   std::size_t place() const { return at_; }
-  /// @throws SceneError with the line of a place in the text.
+  /// @throws InputError with the line of a place in the text.
   [[noreturn]] void fail(std::size_t place, const std::string& message) const;
 
  private:

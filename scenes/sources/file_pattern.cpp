@@ -7,9 +7,9 @@
 #include <optional>
 #include <regex>
 
+#include "common/errors.h"
 #include "scenes/io/particle_file.h"
 #include "scenes/nearest_name.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -118,11 +118,11 @@ Paths files_in_folder(const std::filesystem::path& folder) {
     extensions.push_back(path.extension().string());
   }
   if (paths.empty())
-    throw SceneError(
+    throw InputError(
         fmt::format("{}: this folder holds no particle files ({})", folder.string(), particle_extensions()));
   std::sort(extensions.begin(), extensions.end());
   if (extensions.front() != extensions.back())
-    throw SceneError(fmt::format("{}: this folder holds {} and {} files; name one kind, for example '{}/*{}'",
+    throw InputError(fmt::format("{}: this folder holds {} and {} files; name one kind, for example '{}/*{}'",
                                  folder.string(), extensions.front(), extensions.back(), folder.string(),
                                  extensions.front()));
   return paths;
@@ -134,13 +134,13 @@ Paths matching_files(const std::filesystem::path& pattern) {
   if (std::filesystem::exists(pattern, error)) return {pattern};
   const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
   const auto names = names_in(folder);
-  if (!names) throw SceneError(fmt::format("{}: cannot look into the folder {}", pattern.string(), folder.string()));
+  if (!names) throw InputError(fmt::format("{}: cannot look into the folder {}", pattern.string(), folder.string()));
   const std::regex expression = pattern_expression(pattern.filename().string());
   Paths paths;
   for (const std::string& name : *names)
     if (std::regex_match(name, expression)) paths.push_back(folder / name);
   if (paths.empty()) {
-    throw SceneError(
+    throw InputError(
         fmt::format("{}: no file matches{}", pattern.string(), did_you_mean(pattern.filename().string(), *names)));
   }
   return paths;
@@ -149,7 +149,7 @@ Paths matching_files(const std::filesystem::path& pattern) {
 void check_formats(const Paths& paths) {
   for (const auto& path : paths) {
     if (path.extension() != paths.front().extension())
-      throw SceneError(fmt::format("{}: follows {}; the files of a sequence have one format, name those of one kind",
+      throw InputError(fmt::format("{}: follows {}; the files of a sequence have one format, name those of one kind",
                                    path.string(), paths.front().filename().string()));
   }
 }
@@ -183,10 +183,10 @@ NumberedFiles files_of_patterns(const std::vector<std::string>& names) {
     const Paths found = matching_files(name);
     files.paths.insert(files.paths.end(), found.begin(), found.end());
   }
-  if (files.paths.empty()) throw SceneError("no particle files are given");
+  if (files.paths.empty()) throw InputError("no particle files are given");
   std::sort(files.paths.begin(), files.paths.end(), natural_less);
   const auto twice = std::adjacent_find(files.paths.begin(), files.paths.end());
-  if (twice != files.paths.end()) throw SceneError(twice->string() + ": is given twice");
+  if (twice != files.paths.end()) throw InputError(twice->string() + ": is given twice");
   check_formats(files.paths);
   files.steps.resize(files.paths.size());
   std::iota(files.steps.begin(), files.steps.end(), std::uint64_t{0});
@@ -196,7 +196,7 @@ NumberedFiles files_of_patterns(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i + 1 < files.paths.size(); ++i) {
     const auto a = split_at_digits(files.paths[i].filename().string());
     if (a == split_at_digits(files.paths[i + 1].filename().string()))
-      throw SceneError(fmt::format("{}: has the same number as {}; a sequence has one file a number",
+      throw InputError(fmt::format("{}: has the same number as {}; a sequence has one file a number",
                                    files.paths[i + 1].string(), files.paths[i].string()));
   }
   for (const std::string& number : digits) {

@@ -20,7 +20,7 @@ struct NumberedFiles {
 /// The files of all names, each of which is a file, a folder (all particle files in it), or a pattern whose last part
 /// may hold * (any letters), ? (one letter), %d or %04d (a number). The number is the one run of digits in which the
 /// names differ; where there is no such run, natural order counts (a2 before a10) and none is missing.
-/// @throws SceneError where there are no such files, two files have the same number, or their formats are mixed.
+/// @throws InputError where there are no such files, two files have the same number, or their formats are mixed.
 NumberedFiles files_of_patterns(const std::vector<std::string>& names);
 
 }  // namespace flowskin::scenes

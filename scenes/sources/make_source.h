@@ -7,7 +7,7 @@
 namespace flowskin::scenes {
 
 /// The scene's particle source, at time 0.
-/// @throws SceneError, sph::SettingsError where the scene cannot be started.
+/// @throws InputError, sph::SettingsError where the scene cannot be started.
 std::unique_ptr<ParticleSource> make_source(const Scene& scene);
 
 }  // namespace flowskin::scenes

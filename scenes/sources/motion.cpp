@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/errors.h"
 #include "scenes/nearest_name.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -150,7 +150,7 @@ Motion::Motion(const MotionSpec& spec) : spec_(spec) {
     gradient_ = motion.gradient;
   }
   if (!field_) {
-    throw SceneError("particles.motion.type: there is no motion \"" + spec.type + "\"" +
+    throw InputError("particles.motion.type: there is no motion \"" + spec.type + "\"" +
                      did_you_mean(spec.type, motion_names()));
   }
 }

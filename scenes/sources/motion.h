@@ -15,7 +15,7 @@ std::vector<std::string> motion_names();
 /// v(x, t) = v0(x - u t, t) + u, so that a path is x(t) = p(t) + u t with dp/dt = v0(p, t).
 class Motion {
  public:
-  /// @throws SceneError where there is no motion of this name.
+  /// @throws InputError where there is no motion of this name.
   explicit Motion(const MotionSpec& spec);
 
   /// Velocity at a place and time (m/s).

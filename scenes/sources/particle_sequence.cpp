@@ -6,11 +6,11 @@
 #include <cmath>
 #include <optional>
 
+#include "common/errors.h"
 #include "scenes/io/particle_file.h"
 #include "scenes/io/read_bytes.h"
 #include "scenes/io/vtp_reader.h"
 #include "scenes/scene_checks.h"
-#include "scenes/scene_file.h"
 #include "scenes/sources/file_pattern.h"
 #include "scenes/sources/particle_spacing.h"
 
@@ -63,7 +63,7 @@ class SequenceOpener {
     std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [time, path] : entries) {
       if (!file_times_.empty() && time == file_times_.back())
-        throw SceneError(
+        throw InputError(
             fmt::format("{}: {} and {} have the same time {} s; one file a time is expected (merge the "
                         "parts in ParaView)",
                         file.string(), sequence_.files.back().string(), path.string(), time));
@@ -207,7 +207,7 @@ ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k)
   ParticleFile file = read_particles(sequence.files[k]);
   const auto require = [&](bool has, bool first_has, const char* what) {
     if (first_has && !has)
-      throw SceneError(
+      throw InputError(
           fmt::format("{}: the particles have no {}, but those of {} do; all files of a sequence need the "
                       "same columns",
                       sequence.files[k].string(), what, sequence.files.front().string()));
@@ -217,7 +217,7 @@ ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k)
   require(file.has_rest_positions, sequence.first.has_rest_positions, "rest positions");
   const std::size_t count = file.state.positions.size(), first_count = sequence.first.state.positions.size();
   if (sequence.ids == ParticleSequence::Ids::order && count != first_count)
-    throw SceneError(
+    throw InputError(
         fmt::format("{}: {} particles where the first file has {}, and they have no ids (column \"id\") to "
                     "find them again by; --no-ids goes without",
                     sequence.files[k].string(), count, first_count));

@@ -25,10 +25,10 @@ struct ParticleSequence {
 
 /// Looks at the files of `spec`. All of them are read once where their times or numbers of particles are needed.
 /// @param directory where relative names start
-/// @throws SceneError naming the file and what is wrong with it or with the sequence.
+/// @throws InputError naming the file and what is wrong with it or with the sequence.
 ParticleSequence open_sequence(const RecordedSpec& spec, const std::string& directory);
 
-/// File k. @throws SceneError also where it lacks ids or velocities that the first file has.
+/// File k. @throws InputError also where it lacks ids or velocities that the first file has.
 ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k);
 
 }  // namespace flowskin::scenes

@@ -76,7 +76,7 @@ class ParticleSource {
 
   /// All that its future depends on but the scene. To go on later, make the source from the scene again and restore it.
   virtual void save(StateWriter& writer) const = 0;
-  /// @throws StateError, SceneError where the state is that of another source, or its files are not what they
+  /// @throws StateError, InputError where the state is that of another source, or its files are not what they
   /// were.
   virtual void restore(StateReader& reader) = 0;
 };

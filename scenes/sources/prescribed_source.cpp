@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "scenes/scene_file.h"
+#include "common/errors.h"
 #include "scenes/sources/body_particles.h"
 #include "scenes/sources/forward_time.h"
 
@@ -14,7 +14,7 @@ PrescribedSource::PrescribedSource(const Scene& scene)
     : motion_(scene.particles.motion), spacing_(scene.particles.spacing) {
   state_.positions = scene.particles.positions.empty() ? body_particles(scene) : scene.particles.positions;
   const std::size_t count = state_.positions.size();
-  if (count == 0) throw SceneError(scene.name + ": there are neither bodies nor particles.positions: nothing moves");
+  if (count == 0) throw InputError(scene.name + ": there are neither bodies nor particles.positions: nothing moves");
   state_.ids.resize(count);
   std::iota(state_.ids.begin(), state_.ids.end(), std::uint64_t{0});
   state_.rest_positions = state_.positions;

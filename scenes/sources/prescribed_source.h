@@ -11,7 +11,7 @@ namespace flowskin::scenes {
 /// that they do not depend on the times asked for. Velocities are those of the analytic field.
 class PrescribedSource : public ParticleSource {
  public:
-  /// @throws SceneError, sph::SettingsError where the scene gives no particles or an unknown motion.
+  /// @throws InputError, sph::SettingsError where the scene gives no particles or an unknown motion.
   explicit PrescribedSource(const Scene& scene);
 
   const ParticleState& state() const override { return state_; }

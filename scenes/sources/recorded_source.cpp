@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "scenes/scene_file.h"
+#include "common/errors.h"
 #include "scenes/sources/forward_time.h"
 #include "scenes/sources/particle_spacing.h"
 
@@ -125,7 +125,7 @@ void RecordedSource::advance_to(double time) {
   require_forward(state_.time, time);
   const std::vector<double>& times = sequence_.times;
   if (ends_before(time)) {
-    throw SceneError(
+    throw InputError(
         fmt::format("{}: the recorded sequence of {} files ends at {:.6g} s, before {:.6g} s; ask for fewer frames",
                     sequence_.files.back().string(), times.size(), times.back(), time));
   }
@@ -192,10 +192,10 @@ struct SequenceMark {
   }
 };
 
-/// @throws SceneError where the files are no longer those of the mark.
+/// @throws InputError where the files are no longer those of the mark.
 void check_same_files(const SequenceMark& then, const SequenceMark& now) {
   const auto refuse = [](const std::string& what) {
-    throw SceneError(what + "; the run cannot be resumed with other particles: start it anew");
+    throw InputError(what + "; the run cannot be resumed with other particles: start it anew");
   };
   for (std::size_t k = 0; k < then.names.size(); ++k) {
     if (k >= now.names.size() || now.names[k] != then.names[k])

@@ -16,11 +16,11 @@ namespace flowskin::scenes {
 /// moved by its velocity as far as it has one, with weights that go from one file to the other.
 class RecordedSource : public ParticleSource {
  public:
-  /// @throws SceneError naming the file and what is wrong with it or with the sequence.
+  /// @throws InputError naming the file and what is wrong with it or with the sequence.
   explicit RecordedSource(const Scene& scene);
 
   const ParticleState& state() const override { return state_; }
-  /// @throws SceneError where a file cannot be read, or the sequence ends before `time`.
+  /// @throws InputError where a file cannot be read, or the sequence ends before `time`.
   void advance_to(double time) override;
   double spacing() const override { return spacing_; }
   SourceStatistics statistics() const override;

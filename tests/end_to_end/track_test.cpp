@@ -9,8 +9,8 @@
 
 #include "common/closest_point.h"
 #include "end_to_end/program.h"
+#include "scenes/io/frame_files.h"
 #include "scenes/io/ply_reader.h"
-#include "tools/io/surface_writers.h"
 #include "tracking/mesh/mesh_check.h"
 
 namespace flowskin {
@@ -39,7 +39,7 @@ class TrackCommand : public ::testing::Test {
   static void TearDownTestSuite() { fs::remove_all(folder_); }
 
   static tracking::SurfaceMesh surface(const std::string& run, int frame) {
-    return tools::read_surface_ply(folder_ / run / "surface" / ("frame_000" + std::to_string(frame) + ".ply"));
+    return scenes::read_surface_ply(folder_ / run / "surface" / ("frame_000" + std::to_string(frame) + ".ply"));
   }
 
   /// Tracks and checks that every frame is there and sound.

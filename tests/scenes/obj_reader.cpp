@@ -7,8 +7,8 @@
 #include <fstream>
 #include <numbers>
 
+#include "common/errors.h"
 #include "scenes/io/polygon.h"
-#include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -18,7 +18,7 @@ sph::TriangleMesh read(const std::string& text) { return parse_obj(text, "a.obj"
 std::string error(const std::string& text) {
   try {
     read(text);
-  } catch (const SceneError& error) {
+  } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()).find("a.obj"), 0U) << "the file is not named";
     return error.what();
   }
@@ -131,8 +131,8 @@ TEST(ObjReader, SaysWhatIsWrong) {
   std::ofstream(file) << unit_cube;
   EXPECT_EQ(read_obj(file).triangles, read(unit_cube).triangles);
   std::filesystem::remove(file);
-  EXPECT_THROW(read_obj("/no/such/file.obj"), SceneError);
-  EXPECT_THROW(read_obj(std::filesystem::temp_directory_path()), SceneError);
+  EXPECT_THROW(read_obj("/no/such/file.obj"), InputError);
+  EXPECT_THROW(read_obj(std::filesystem::temp_directory_path()), InputError);
 }
 
 TEST(ObjReader, SurvivesEveryTruncationAndEveryChangedByte) {
@@ -143,12 +143,12 @@ TEST(ObjReader, SurvivesEveryTruncationAndEveryChangedByte) {
       changed[i] = replacement;
       try {
         read(changed);
-      } catch (const SceneError&) {
+      } catch (const InputError&) {
       }
     }
     try {
       read(text.substr(0, i));
-    } catch (const SceneError&) {
+    } catch (const InputError&) {
     }
   }
 }
@@ -172,9 +172,9 @@ TEST(ObjReader, MirroringKeepsOutsideOutside) {
   placement.scale = Vec3(-1, -2, 3);
   EXPECT_NEAR(volume(place(read(unit_cube), placement)), 6, 1e-12);
   placement.scale = Vec3(1, 0, 1);
-  EXPECT_THROW(place(read(unit_cube), placement), SceneError);
+  EXPECT_THROW(place(read(unit_cube), placement), InputError);
   placement.scale = Vec3(1, NAN, 1);
-  EXPECT_THROW(place(read(unit_cube), placement), SceneError);
+  EXPECT_THROW(place(read(unit_cube), placement), InputError);
   placement = MeshPlacement();
   EXPECT_EQ(place(read(unit_cube), placement).positions, read(unit_cube).positions) << "no placement changes no bit";
 }

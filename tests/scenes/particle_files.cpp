@@ -36,7 +36,7 @@ ParticleFile parse_particles(const std::string& text) {
 std::string error_of_file(const std::string& text) {
   try {
     parse_particles(text);
-  } catch (const SceneError& error) {
+  } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()).find("a.csv"), 0U) << error.what();
     return error.what();
   }
@@ -75,7 +75,7 @@ TEST(ParticleFiles, EveryTruncationOfVtkFilesIsAnErrorOrLosesOnlyTheEnd) {
       try {
         const ParticleTable table = parse_particle_table(bytes.substr(0, size), "a");
         for (const auto& column : table.columns) ASSERT_EQ(column.second.size(), table.count) << size;
-      } catch (const SceneError&) {
+      } catch (const InputError&) {
         ++errors;
       }
     }
@@ -96,7 +96,7 @@ TEST(ParticleFiles, EveryChangedByteIsSurvived) {
           const ParticleTable table = parse_particle_table(changed, "a");
           for (const auto& column : table.columns) ASSERT_EQ(column.second.size(), table.count) << i;
           particles_from_table(table, "a");
-        } catch (const SceneError&) {
+        } catch (const InputError&) {
         }
       }
     }
@@ -203,8 +203,8 @@ TEST(ParticleFiles, CollectionsOfFiles) {
   EXPECT_EQ(entries[0].first, 0.5);
   EXPECT_EQ(entries[0].second, "folder/a&b.vtp");
   EXPECT_EQ(entries[1].second, "/c.vtp");
-  EXPECT_THROW(parse_pvd("<VTKFile/>", "a.pvd"), SceneError);
-  EXPECT_THROW(parse_pvd("<Collection><DataSet file=\"x\"/></Collection>", "a.pvd"), SceneError);
+  EXPECT_THROW(parse_pvd("<VTKFile/>", "a.pvd"), InputError);
+  EXPECT_THROW(parse_pvd("<Collection><DataSet file=\"x\"/></Collection>", "a.pvd"), InputError);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "scenes/scene_file.h"
+#include "common/errors.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -19,7 +19,7 @@ template <class Action>
 std::string error_of(Action&& action) {
   try {
     action();
-  } catch (const SceneError& error) {
+  } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()).find("a.ply"), 0U) << "the file is not named";
     return error.what();
   }
@@ -136,7 +136,7 @@ TEST(PlyReader, EveryTruncationIsNoticed) {
         header("binary_big_endian", "\r\n") + binary_data(true)}) {
     // The last "0" of the ascii file is its last value: without line end it is still whole.
     const std::size_t whole = bytes.size() - (bytes.back() == '\n' ? 1 : 0);
-    for (std::size_t size = 0; size < whole; ++size) EXPECT_THROW(read(bytes.substr(0, size)), SceneError) << size;
+    for (std::size_t size = 0; size < whole; ++size) EXPECT_THROW(read(bytes.substr(0, size)), InputError) << size;
   }
 }
 
@@ -150,7 +150,7 @@ TEST(PlyReader, SurvivesEveryChangedByte) {
         try {
           for (const auto& triangle : read(changed).triangles)
             for (const int vertex : triangle) EXPECT_GE(vertex, 0);
-        } catch (const SceneError&) {
+        } catch (const InputError&) {
         }
       }
 }
@@ -172,7 +172,7 @@ TEST(PlyReader, AbsurdCountsTakeNoMemory) {
   std::string list =
       "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\nelement face 1\n"
       "property list uint int vertex_indices\nend_header\n";
-  EXPECT_THROW(read(list + std::string(4, '\xff') + std::string(100, '\0')), SceneError);
+  EXPECT_THROW(read(list + std::string(4, '\xff') + std::string(100, '\0')), InputError);
   // Elements without properties take no room, so any number of them is possible.
   EXPECT_EQ(read("ply\nformat ascii 1.0\nelement nothing 4000000000000000000\nelement vertex 1\nproperty float "
                  "x\nend_header\n1\n")
@@ -209,8 +209,8 @@ TEST(PlyReader, SaysWhatIsWrong) {
   std::ofstream(file) << particle_header("1") << "1 2 3\n";
   EXPECT_EQ(particles_from_ply(file).positions[0], Vec3(1, 2, 3));
   std::filesystem::remove(file);
-  EXPECT_THROW(read_ply("/no/such/file.ply"), SceneError);
-  EXPECT_THROW(read_ply(std::filesystem::temp_directory_path()), SceneError);
+  EXPECT_THROW(read_ply("/no/such/file.ply"), InputError);
+  EXPECT_THROW(read_ply(std::filesystem::temp_directory_path()), InputError);
 }
 
 TEST(PlyReader, ParticlesGetDefaultsForWhatIsMissing) {

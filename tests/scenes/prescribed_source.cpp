@@ -291,7 +291,7 @@ TEST(PrescribedSource, UnknownMotionIsAnError) {
   try {
     make_source(points_scene(motion));
     FAIL();
-  } catch (const SceneError& error) {
+  } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("did you mean \"rotation\"?"), std::string::npos);
   }
 }

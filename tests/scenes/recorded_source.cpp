@@ -76,7 +76,7 @@ class RecordedSourceTest : public testing::Test {
   static std::string error_of(const Action& action) {
     try {
       action();
-    } catch (const SceneError& error) {
+    } catch (const InputError& error) {
       return error.what();
     }
     return "no error";
@@ -117,7 +117,7 @@ TEST_F(RecordedSourceTest, InterpolatesByIdWithCubicHermiteCurves) {
   EXPECT_EQ(source->state().rest_positions[0], Vec3(cubic(3, 1) + Vec3(100, 0, 0)));
   EXPECT_FALSE(source->ends_before(1.0));
   EXPECT_TRUE(source->ends_before(1.01));
-  EXPECT_THROW(source->advance_to(1.2), SceneError);
+  EXPECT_THROW(source->advance_to(1.2), InputError);
   EXPECT_THROW(source->advance_to(0.2), std::invalid_argument);
 }
 
@@ -203,7 +203,7 @@ TEST_F(RecordedSourceTest, FilesAreOrderedByNumberOrNaturally) {
   EXPECT_EQ(files_of_patterns({files[8].string(), files[0].string(), files[1].string()}).paths,
             (std::vector<std::filesystem::path>{files[0], files[1], files[8]}));
   EXPECT_EQ(files_of_patterns({folder_.string()}).paths, files);
-  EXPECT_THROW(files_of_patterns({files[0].string(), files[0].string()}), SceneError);
+  EXPECT_THROW(files_of_patterns({files[0].string(), files[0].string()}), InputError);
   for (const char* name : {"take10_b.x", "take2_b.x", "take2_a.x"}) std::ofstream(folder_ / name) << " ";
   const auto takes = files_of_patterns({(folder_ / "take*.x").string()}).paths;
   ASSERT_EQ(takes.size(), 3u);

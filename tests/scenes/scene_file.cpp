@@ -137,7 +137,7 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
     try {
       EXPECT_NE(write_scene(parse(text)), whole) << lines[skip];
       ++dropped;
-    } catch (const SceneError& error) {
+    } catch (const InputError& error) {
       EXPECT_THAT(std::string(error.what()),
                   testing::ContainsRegex("is missing|belongs to|set tracking.enabled to false"))
           << lines[skip];
@@ -258,7 +258,7 @@ TEST(SceneFile, RandomMutationsNeverCrash) {
       const Scene scene = parse(text);
       ++parsed;
       EXPECT_NO_THROW(parse(write_scene(scene))) << text;
-    } catch (const SceneError& error) {
+    } catch (const InputError& error) {
       EXPECT_THAT(error.what(), testing::StartsWith("test.json:")) << text;
     }
   }

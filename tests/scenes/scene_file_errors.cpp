@@ -17,7 +17,7 @@ TEST(SceneFileErrors, MissingFileFolderAndUnreadableFile) {
   const auto message = [](const std::filesystem::path& file) {
     try {
       read_scene(file, test_vocabulary());
-    } catch (const SceneError& error) {
+    } catch (const InputError& error) {
       return std::string(error.what());
     }
     return std::string("no error");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "common/errors.h"
 #include "scenes/scene_file.h"
 
 namespace flowskin::scenes {
@@ -26,7 +27,7 @@ inline Scene parse(const std::string& text) {
 inline std::string error_of(const std::string& text) {
   try {
     parse(text);
-  } catch (const SceneError& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "no error";

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/errors.h"
+#include "scenes/io/atomic_file.h"
 #include "scenes/scene_file.h"
-#include "tools/errors.h"
-#include "tools/io/atomic_file.h"
 #include "tools/pipeline/checkpoint.h"
 #include "tools/pipeline/comparison_pictures.h"
 #include "tools/pipeline/resume.h"
@@ -92,10 +92,10 @@ TEST_F(Checkpoints, OfAnotherVersionAreRefused) {
 }
 
 TEST_F(Checkpoints, DraftsAreRemovedInASignalHandler) {
-  AtomicFile file(folder_ / "a.bin");
+  scenes::AtomicFile file(folder_ / "a.bin");
   file.write("half");
   EXPECT_EQ(count(), 1U);
-  remove_drafts();
+  scenes::remove_drafts();
   EXPECT_EQ(count(), 0U);
 }
 
@@ -103,7 +103,7 @@ TEST_F(Checkpoints, StaleDraftsAreRemoved) {
   std::ofstream(folder_ / ".frame_0001.ply.123-4.part") << "half";
   std::ofstream(folder_ / "surface.part.mp4") << "half";
   std::ofstream(folder_ / "mine.part") << "whole";
-  remove_stale_drafts(folder_);
+  scenes::remove_stale_drafts(folder_);
   EXPECT_EQ(count(), 1U);
   EXPECT_TRUE(fs::exists(folder_ / "mine.part"));
 }

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "common/errors.h"
 #include "scenes/sources/make_source.h"
 #include "tests/tools/io_fixture.h"
-#include "tools/errors.h"
 #include "tools/pipeline/comparison.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/report/compare_report.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 #include "tools/render/labels.h"
 #include "tools/render/video.h"
 

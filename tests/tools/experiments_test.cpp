@@ -7,8 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "common/errors.h"
 #include "scenes/scene_file.h"
-#include "tools/errors.h"
 #include "tools/experiments/error_measures.h"
 #include "tools/experiments/experiment.h"
 #include "tools/experiments/material_motion.h"

@@ -1,7 +1,7 @@
 #include "tools/textures/image.h"
 
+#include "common/errors.h"
 #include "tests/tools/io_fixture.h"
-#include "tools/errors.h"
 #include "tools/textures/perceptual_color.h"
 #include "tools/textures/stroke_font.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/errors.h"
 #include "tests/tools/io_fixture.h"
-#include "tools/errors.h"
 #include "tools/report/plot_axis.h"
 #include "tools/textures/image.h"
 

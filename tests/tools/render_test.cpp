@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 #include "tools/render/camera.h"
 #include "tools/render/color.h"
 #include "tools/render/lighting.h"

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <map>
 
+#include "common/errors.h"
+#include "scenes/io/frame_files.h"
 #include "scenes/io/ply_reader.h"
 #include "tests/tools/io_fixture.h"
 #include "tests/tracking/mesh_test_shapes.h"
-#include "tools/errors.h"
-#include "tools/io/surface_writers.h"
 
 namespace flowskin::tools {
 namespace {
@@ -303,10 +303,10 @@ SurfaceFrame blended_frame() {
 
 TEST_F(TextureBlendFiles, PlyBringsBackWeightsAndBothSets) {
   const SurfaceFrame frame = blended_frame();
-  write_surface_ply(path("a.ply"), frame);
+  scenes::write_surface_ply(path("a.ply"), frame);
   SurfaceFrame back = sphere_frame(2);
   back.corner_uvs.clear();
-  read_surface_blend(path("a.ply"), back);
+  scenes::read_surface_blend(path("a.ply"), back);
   EXPECT_EQ(back.texture_blend, frame.texture_blend);
   EXPECT_EQ(back.corner_uvs, frame.corner_uvs);
   EXPECT_EQ(back.corner_uvs2, frame.corner_uvs2);
@@ -318,21 +318,21 @@ TEST_F(TextureBlendFiles, PlyBringsBackWeightsAndBothSets) {
     EXPECT_EQ(ply.vertex.at("texture_v2")[v], frame.vertex_uvs2[v].y());
     EXPECT_EQ(ply.vertex.at("id")[v], static_cast<double>(frame.mesh.ids[v]));
   }
-  EXPECT_EQ(read_surface_ply(path("a.ply")).triangles, frame.mesh.triangles);
+  EXPECT_EQ(scenes::read_surface_ply(path("a.ply")).triangles, frame.mesh.triangles);
 }
 
 TEST_F(TextureBlendFiles, PlyWithWeightsOnlyAndWithNothing) {
   SurfaceFrame frame = blended_frame();
   frame.vertex_uvs2.clear();
   frame.corner_uvs2.clear();
-  write_surface_ply(path("a.ply"), frame);
+  scenes::write_surface_ply(path("a.ply"), frame);
   SurfaceFrame back;
-  read_surface_blend(path("a.ply"), back);
+  scenes::read_surface_blend(path("a.ply"), back);
   EXPECT_EQ(back.texture_blend, frame.texture_blend);
   EXPECT_TRUE(back.corner_uvs.empty() && back.corner_uvs2.empty());
-  write_surface_ply(path("b.ply"), sphere_frame(2));
+  scenes::write_surface_ply(path("b.ply"), sphere_frame(2));
   SurfaceFrame nothing;
-  read_surface_blend(path("b.ply"), nothing);
+  scenes::read_surface_blend(path("b.ply"), nothing);
   EXPECT_TRUE(nothing.texture_blend.empty() && nothing.corner_uvs2.empty());
 }
 
@@ -340,7 +340,7 @@ TEST_F(TextureBlendFiles, BadWeightsAndCoordinatesAreNotWritten) {
   const auto message = [&](auto spoil) {
     SurfaceFrame frame = blended_frame();
     spoil(frame);
-    return message_of<RunError>([&] { write_surface_ply(path("a.ply"), frame); });
+    return message_of<RunError>([&] { scenes::write_surface_ply(path("a.ply"), frame); });
   };
   const auto expect = [&](const std::string& text, auto spoil) {
     EXPECT_NE(message(spoil).find(text), std::string::npos) << message(spoil);

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <string>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 #include "tools/pipeline/picture_maker.h"
 #include "tools/render/video.h"
 

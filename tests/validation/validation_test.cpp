@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "common/errors.h"
 #include "sph/solver.h"
-#include "tools/errors.h"
 #include "tools/validation/validation_run.h"
 
 namespace flowskin::tools {

@@ -7,9 +7,9 @@
 #include <memory>
 #include <new>
 
+#include "common/errors.h"
 #include "scenes/scene_file.h"
 #include "tools/commands/commands.h"
-#include "tools/errors.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/pipeline/scene_run.h"
 #include "tools/pipeline/tracker_bridge.h"
@@ -253,8 +253,6 @@ int run_program(int argc, const char* const* argv) {
   } catch (const InterruptedError& error) {
     return complain(error.what(), InterruptedError::exit_status());
   } catch (const InputError& error) {
-    return complain(error.what(), kInputWrong);
-  } catch (const scenes::SceneError& error) {
     return complain(error.what(), kInputWrong);
   } catch (const sph::SettingsError& error) {
     return complain(error.what(), kInputWrong);

@@ -3,17 +3,17 @@
 
 #include <algorithm>
 
+#include "common/errors.h"
+#include "scenes/io/file_info.h"
 #include "scenes/scene_file.h"
 #include "tools/commands/commands.h"
-#include "tools/errors.h"
-#include "tools/io/file_info.h"
 #include "tools/pipeline/tracker_bridge.h"
 
 namespace flowskin::tools {
 
 namespace {
 
-FileInfo describe_scene(const std::filesystem::path& file) {
+scenes::FileInfo describe_scene(const std::filesystem::path& file) {
   const scenes::Scene scene = scenes::read_scene(file, scene_vocabulary());
   using Source = scenes::ParticlesSpec::Source;
   const Source source = scene.particles.source;
@@ -22,7 +22,7 @@ FileInfo describe_scene(const std::filesystem::path& file) {
                                                     : "a recorded sequence";
   const auto moving = std::count_if(scene.boundaries.begin(), scene.boundaries.end(),
                                     [](const scenes::BoundarySpec& wall) { return wall.boundary.motion.moves(); });
-  FileInfo info;
+  scenes::FileInfo info;
   info.lines = {fmt::format("scene \"{}\"{}{}", scene.name, scene.description.empty() ? "" : ": ", scene.description),
                 fmt::format("{} frames at {} per second, particles from {}, spacing {} m", scene.frames,
                             scene.frame_rate, name, scene.particles.spacing),
@@ -38,7 +38,7 @@ FileInfo describe_scene(const std::filesystem::path& file) {
 int info_command(const std::vector<std::filesystem::path>& files) {
   bool sound = true;
   for (const auto& file : files) {
-    const FileInfo info = file.extension() == ".json" ? describe_scene(file) : describe_file(file);
+    const scenes::FileInfo info = file.extension() == ".json" ? describe_scene(file) : describe_file(file);
     fmt::print("{}\n", file.string());
     for (const std::string& line : info.lines) fmt::print("  {}\n", line);
     sound = sound && info.sound;

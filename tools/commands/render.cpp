@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
+#include "common/errors.h"
+#include "scenes/io/frame_files.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/scene_file.h"
 #include "tools/commands/commands.h"
-#include "tools/errors.h"
-#include "tools/io/surface_writers.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/pipeline/picture_maker.h"
 #include "tools/pipeline/tracker_bridge.h"
@@ -60,11 +60,12 @@ class Redraw {
     Progress progress("picture", total, options_.quiet ? Progress::Mode::quiet : Progress::Mode::automatic);
     int done = 0;
     for (int frame : surface_frames_) {
-      const auto mesh = read_surface_ply(directory_.surface(frame, ".ply"));
+      const auto mesh = scenes::read_surface_ply(directory_.surface(frame, ".ply"));
       SurfaceFrame surface = dress(mesh, frame / scene_.frame_rate, scene_.texture, rest_);
-      if (scene_.texture.when_stretched != "leave") read_surface_blend(directory_.surface(frame, ".ply"), surface);
+      if (scene_.texture.when_stretched != "leave")
+        scenes::read_surface_blend(directory_.surface(frame, ".ply"), surface);
       if (scene_.render.style == "confidence")
-        surface.confidence = read_surface_confidence(directory_.surface(frame, ".ply"));
+        surface.confidence = scenes::read_surface_confidence(directory_.surface(frame, ".ply"));
       pictures.draw(frame, surface);
       step(progress, ++done);
     }
@@ -79,7 +80,7 @@ class Redraw {
   sph::Box fluid_at_start() const {
     if (!particle_frames_.empty())
       return bounds(scenes::particles_from_ply(directory_.particles(particle_frames_.front(), ".ply")).positions);
-    return bounds(read_surface_ply(directory_.surface(surface_frames_.front(), ".ply")).positions);
+    return bounds(scenes::read_surface_ply(directory_.surface(surface_frames_.front(), ".ply")).positions);
   }
 
   static void step(Progress& progress, int done) {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/errors.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/particle_sequence.h"
 #include "scenes/sources/particle_spacing.h"
 #include "tools/commands/commands.h"
-#include "tools/errors.h"
 #include "tools/pipeline/picture_maker.h"
 #include "tools/pipeline/scene_run.h"
 #include "tools/pipeline/tracker_bridge.h"

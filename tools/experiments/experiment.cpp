@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "scenes/io/atomic_file.h"
 #include "scenes/scene_file.h"
-#include "tools/io/atomic_file.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tracking/velocity/velocity_method.h"
 
@@ -51,7 +51,7 @@ scenes::Scene PaperRun::scene(const std::string& name) const {
 }
 
 void PaperRun::write_csv(const std::string& name, const ResultTable& table, ExperimentReport& report) const {
-  write_file(out / (name + ".csv"), table.csv());
+  scenes::write_file(out / (name + ".csv"), table.csv());
   report.files.push_back(name + ".csv");
 }
 

@@ -47,7 +47,7 @@ struct PaperRun {
   std::vector<std::string> best_in_flow;  ///< Those shown beside the paper's on the stairs.
 
   /// With a coarser mesh and small pictures where the run is quick.
-  /// @throws scenes::SceneError where the file is missing or wrong.
+  /// @throws InputError where the file is missing or wrong.
   scenes::Scene scene(const std::string& name) const;
   /// A line of a plot; each method has the same style in all plots.
   Series series(const std::string& method, std::vector<double> x, std::vector<double> y) const;

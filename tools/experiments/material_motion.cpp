@@ -5,8 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "common/errors.h"
 #include "scenes/sources/make_source.h"
-#include "tools/errors.h"
 #include "tools/pipeline/tracker_bridge.h"
 
 namespace flowskin::tools {

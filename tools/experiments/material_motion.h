@@ -17,7 +17,7 @@ enum class Truth {
 /// Particles, field and material of a scene with a prescribed motion that has closed-form paths, at any time.
 class MaterialMotion {
  public:
-  /// @throws InputError where the scene's motion has no closed form; SceneError where it has no particles.
+  /// @throws InputError where the scene's motion has no closed form; InputError where it has no particles.
   explicit MaterialMotion(const scenes::Scene& scene);
 
   /// The exact field at a time (s).

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "tools/errors.h"
+#include "common/errors.h"
+#include "scenes/io/atomic_file.h"
 #include "tools/experiments/experiment.h"
 #include "tools/experiments/summary.h"
-#include "tools/io/atomic_file.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/report/run_log.h"
 #include "tools/report/stage_clock.h"
@@ -116,10 +116,10 @@ void run_paper(const PaperOptions& options) {
       log.detail(
           fmt::format("  {}: {} | {} | {}", claim.source, claim.claim, claim.measured, verdict_name(claim.verdict)));
   }
-  write_file(run.out / "verdicts.csv", verdict_table(reports).csv());
+  scenes::write_file(run.out / "verdicts.csv", verdict_table(reports).csv());
   const SummaryHead head{version_text(),           machine_text(), options.command_line, omp_get_max_threads(),
                          wall_seconds() - started, options.quick,  run.methods,          run.best};
-  write_file(run.out / kSummary, summary_text(head, reports));
+  scenes::write_file(run.out / kSummary, summary_text(head, reports));
   log.info(fmt::format("{:>12}: {:6.1f} s", "in all", wall_seconds() - started));
   log.info("done: " + (run.out / kSummary).string());
 }

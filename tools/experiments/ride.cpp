@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tracking/advection/integrator.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
+#include "common/errors.h"
 #include "scenes/sources/make_source.h"
-#include "tools/errors.h"
 #include "tools/experiments/error_measures.h"
 #include "tools/experiments/experiment.h"
 #include "tools/pipeline/interruption.h"

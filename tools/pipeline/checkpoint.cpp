@@ -5,9 +5,9 @@
 
 #include <fstream>
 
+#include "common/errors.h"
+#include "scenes/io/atomic_file.h"
 #include "scenes/io/read_bytes.h"
-#include "tools/errors.h"
-#include "tools/io/atomic_file.h"
 #include "tools/pipeline/run_directory.h"
 #include "tools/report/run_log.h"
 
@@ -69,7 +69,7 @@ Checkpoint::Checkpoint(fs::path file) : file_(std::move(file)), bytes_(scenes::r
 }
 
 void CheckpointFolder::save(const CheckpointHeader& header, const std::function<void(StateWriter&)>& state) const {
-  AtomicFile file(folder_ / fmt::format("frame_{:04}.bin", header.frame));
+  scenes::AtomicFile file(folder_ / fmt::format("frame_{:04}.bin", header.frame));
   std::uint64_t size = 0;
   std::uint32_t crc = 0;
   const auto put = [&](std::string_view bytes) {
@@ -109,7 +109,7 @@ std::optional<fs::path> CheckpointFolder::newest() const {
 }
 
 void CheckpointFolder::mark_complete(int frames) const {
-  write_file(mark(), fmt::format("{}\n", frames));
+  scenes::write_file(mark(), fmt::format("{}\n", frames));
   keep(1);
 }
 

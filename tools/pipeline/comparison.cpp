@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "common/errors.h"
 #include "common/quantile.h"
-#include "tools/errors.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/render/video.h"
 #include "tools/report/compare_report.h"

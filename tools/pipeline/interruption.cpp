@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-#include "tools/io/atomic_file.h"
+#include "scenes/io/atomic_file.h"
 
 namespace flowskin::tools {
 
@@ -15,7 +15,7 @@ void on_signal(int signal) {
     interruption_signal = signal;
     return;
   }
-  remove_drafts();
+  scenes::remove_drafts();
   std::signal(signal, SIG_DFL);
   std::raise(signal);  // comes when this handler returns
 }

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 
 namespace flowskin::tools {
 

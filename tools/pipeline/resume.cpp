@@ -7,8 +7,8 @@
 #include <cstring>
 #include <map>
 
+#include "common/errors.h"
 #include "scenes/json_text.h"
-#include "tools/errors.h"
 
 namespace flowskin::tools {
 

@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <charconv>
 
-#include "tools/errors.h"
-#include "tools/io/atomic_file.h"
+#include "common/errors.h"
+#include "scenes/io/atomic_file.h"
 
 namespace flowskin::tools {
 
@@ -52,7 +52,7 @@ void RunDirectory::prepare() const {
         fs::remove_all(old);
     }
     for (const fs::path& folder : folders()) fs::create_directories(folder);
-    remove_stale_drafts(root_);
+    scenes::remove_stale_drafts(root_);
   } catch (const fs::filesystem_error& error) {
     throw RunError(fmt::format("cannot prepare the folder {}: {}", root_.string(), error.code().message()));
   }
@@ -66,9 +66,9 @@ void RunDirectory::prepare_to_resume() const {
   try {
     for (const fs::path& folder : folders()) {
       fs::create_directories(folder);
-      remove_stale_drafts(folder);
+      scenes::remove_stale_drafts(folder);
     }
-    remove_stale_drafts(root_);
+    scenes::remove_stale_drafts(root_);
   } catch (const fs::filesystem_error& error) {
     throw RunError(fmt::format("cannot prepare the folder {}: {}", root_.string(), error.code().message()));
   }

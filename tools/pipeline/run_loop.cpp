@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "common/errors.h"
+#include "scenes/io/atomic_file.h"
 #include "scenes/scene_file.h"
-#include "tools/errors.h"
-#include "tools/io/atomic_file.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/pipeline/resume.h"
 #include "tools/report/time_table.h"
@@ -69,7 +69,7 @@ SceneRun::SceneRun(const RunOptions& options, RunStart begin, const RunDirectory
     pictures_ = std::make_unique<PictureMaker>(directory_, scene_, texture_, bounds(start.positions));
   if (!options_.compare.empty()) start_comparison();
   if (resumed) restore(*resumed);
-  write_file(directory_.scene(), scenes::write_scene(scene_));
+  scenes::write_file(directory_.scene(), scenes::write_scene(scene_));
 }
 
 CheckpointHeader SceneRun::header() const {
@@ -106,7 +106,7 @@ void SceneRun::restore(Checkpoint& checkpoint) {
     source_->restore(checkpoint.state());
     visit(checkpoint.state());
     if (checkpoint.state().bytes_left() > 0) throw StateError("there is more in it than is expected");
-  } catch (const scenes::SceneError& error) {
+  } catch (const InputError& error) {
     checkpoint.refuse(std::string("cannot be resumed from: ") + error.what());
   } catch (const std::exception& error) {
     checkpoint.refuse(std::string("does not fit this program: ") + error.what() + "; run the scene anew");

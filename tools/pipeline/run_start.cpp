@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <utility>
 
+#include "common/errors.h"
 #include "scenes/scene_checks.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/make_source.h"
-#include "tools/errors.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/report/stage_clock.h"
 #include "tools/textures/texture_mapping.h"

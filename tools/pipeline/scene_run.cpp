@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "common/errors.h"
 #include "scenes/scene_file.h"
-#include "tools/errors.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/pipeline/resume.h"
 #include "tools/pipeline/run_loop.h"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 
 namespace flowskin::tools {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 #include "tools/render/color.h"
 #include "tools/render/labels.h"
 #include "tools/render/video.h"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 #include "tools/render/camera.h"
 #include "tools/render/film.h"
 #include "tools/render/lighting.h"

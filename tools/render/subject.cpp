@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 #include "tools/render/color.h"
 #include "tools/textures/perceptual_color.h"
 

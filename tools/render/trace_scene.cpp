@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 
 namespace flowskin::tools {
 

@@ -14,7 +14,7 @@
 #include <cstring>
 #include <system_error>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 
 namespace flowskin::tools {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "tools/io/atomic_file.h"
+#include "scenes/io/atomic_file.h"
 
 namespace flowskin::tools {
 namespace {
@@ -157,7 +157,7 @@ void write_compare_markdown(const std::filesystem::path& file, const CompareSett
   if (setting.has_pictures) text += "\n![the surfaces](compare_sheet.png)\n";
   if (setting.has_video) text += "\nSide by side: [compare.mp4](compare.mp4). ";
   text += "\nAll numbers: [compare.csv](compare.csv).\n";
-  write_file(file, text);
+  scenes::write_file(file, text);
 }
 
 }  // namespace flowskin::tools

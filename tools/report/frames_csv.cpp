@@ -2,13 +2,14 @@
 
 #include <string>
 
-#include "tools/io/atomic_file.h"
+#include "scenes/io/atomic_file.h"
 #include "tools/report/csv_text.h"
 
 namespace flowskin::tools {
 
 void write_frames_csv(const std::filesystem::path& file, const std::vector<FrameRow>& rows) {
-  write_file(file, csv_text(rows, [](const auto& row, const auto& visit) { for_each_frame_column(row, visit); }));
+  scenes::write_file(file,
+                     csv_text(rows, [](const auto& row, const auto& visit) { for_each_frame_column(row, visit); }));
 }
 
 }  // namespace flowskin::tools

@@ -8,8 +8,8 @@
 #include <memory>
 #include <regex>
 
-#include "tools/errors.h"
-#include "tools/io/atomic_file.h"
+#include "common/errors.h"
+#include "scenes/io/atomic_file.h"
 #include "tools/report/plot_panel.h"
 
 namespace flowskin::tools {
@@ -135,8 +135,8 @@ void write_plots(const PlotSheet& sheet, const fs::path& without_extension) {
   check(sheet);
   const SheetLayout layout = measured(sheet);
   const fs::path svg = without_extension.string() + ".svg", png = without_extension.string() + ".png";
-  write_file(svg, svg_of(sheet, layout, svg));
-  write_file(png, png_of(sheet, layout, png));
+  scenes::write_file(svg, svg_of(sheet, layout, svg));
+  scenes::write_file(png, png_of(sheet, layout, png));
 }
 
 void write_plot(const Plot& plot, const fs::path& without_extension) {

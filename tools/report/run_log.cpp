@@ -10,7 +10,7 @@
 
 #include <fstream>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 
 namespace flowskin::tools {
 

@@ -18,10 +18,9 @@
 #define STBI_WRITE_NO_STDIO
 #include <stb_image_write.h>
 
+#include "common/errors.h"
+#include "scenes/io/atomic_file.h"
 #include "scenes/io/read_bytes.h"
-#include "scenes/scene_file.h"
-#include "tools/errors.h"
-#include "tools/io/atomic_file.h"
 
 namespace flowskin::tools {
 namespace {
@@ -37,12 +36,7 @@ void append(void* text, void* data, int size) {
 
 Image read_image(const std::filesystem::path& file) {
   const std::string name = file.string();
-  std::string bytes;
-  try {
-    bytes = scenes::read_bytes(file);
-  } catch (const scenes::SceneError& error) {
-    throw InputError(error.what());
-  }
+  const std::string bytes = scenes::read_bytes(file);
   if (bytes.size() > INT_MAX) throw InputError(name + ": too large for an image");
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const auto size = static_cast<int>(bytes.size());
@@ -76,7 +70,7 @@ void write_png(const std::filesystem::path& file, const Image& image) {
   std::string png;
   if (stbi_write_png_to_func(&append, &png, image.width, image.height, 3, image.pixels.data(), 3 * image.width) == 0)
     throw RunError("cannot write " + file.string() + ": the image could not be compressed (out of memory)");
-  write_file(file, png);
+  scenes::write_file(file, png);
 }
 
 Image make_texture(const std::string& name, const std::filesystem::path& directory) {

@@ -1,8 +1,8 @@
 // The list of all validations.
 #include <fmt/format.h>
 
+#include "common/errors.h"
 #include "scenes/nearest_name.h"
-#include "tools/errors.h"
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {

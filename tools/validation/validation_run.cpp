@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "common/errors.h"
+#include "scenes/io/atomic_file.h"
 #include "sph/solver.h"
-#include "tools/errors.h"
-#include "tools/io/atomic_file.h"
 #include "tools/report/run_log.h"
 #include "tools/report/stage_clock.h"
 
@@ -122,7 +122,8 @@ std::string outcome_text(const std::vector<ValidationOutcome>& outcomes) {
 }
 
 void write_outcome(const ValidationOutcome& outcome, const fs::path& folder) {
-  if (!outcome.result.data.rows.empty()) write_file(folder / (outcome.name + ".csv"), outcome.result.data.csv());
+  if (!outcome.result.data.rows.empty())
+    scenes::write_file(folder / (outcome.name + ".csv"), outcome.result.data.csv());
   if (!outcome.result.plots.plots.empty()) write_plots(outcome.result.plots, folder / outcome.name);
 }
 
@@ -147,8 +148,8 @@ bool run_validation(const ValidateOptions& options) {
       std::fflush(stdout);
     }
   }
-  write_file(options.out / "validation.csv", outcome_table(outcomes).csv());
-  write_file(options.out / "validation.md", report_text(cases, outcomes, options.resolution));
+  scenes::write_file(options.out / "validation.csv", outcome_table(outcomes).csv());
+  scenes::write_file(options.out / "validation.md", report_text(cases, outcomes, options.resolution));
   fmt::print("\n{}", outcome_text(outcomes));
   fmt::print("\n{}; plots and numbers are in {}\n", all_hold ? "all figures hold" : "some figures FAILED",
              options.out.string());

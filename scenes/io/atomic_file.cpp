@@ -1,4 +1,4 @@
-#include "tools/io/atomic_file.h"
+#include "scenes/io/atomic_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -10,9 +10,9 @@
 #include <string>
 #include <system_error>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,4 +145,4 @@ void remove_stale_drafts(const fs::path& folder) {
   }
 }
 
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

@@ -1,12 +1,11 @@
 #include <cstring>
 
+#include "common/errors.h"
+#include "scenes/io/frame_files.h"
 #include "scenes/io/ply_reader.h"
-#include "scenes/scene_file.h"
-#include "tests/tools/io_fixture.h"
-#include "tools/errors.h"
-#include "tools/io/surface_writers.h"
+#include "tests/scenes/io_fixture.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 class PlyWriterTest : public IoTest {};
@@ -34,10 +33,10 @@ TEST_F(PlyWriterTest, SurfaceComesBackAsFloats) {
 }
 
 TEST_F(PlyWriterTest, SurfaceHasAllProperties) {
-  SurfaceFrame frame = sphere_frame(2, "spherical");
+  SurfaceFrame frame = sphere_frame(2);
   frame.texture_file = "checker.png";
   write_surface_ply(path("a.ply"), frame);
-  const scenes::PlyFile ply = scenes::read_ply(path("a.ply"));
+  const PlyFile ply = read_ply(path("a.ply"));
   EXPECT_EQ(ply.vertex.size(), 20U);
   EXPECT_EQ(ply.comments,
             (std::vector<std::string>{"FlowSkin surface, m, s, y up", "time 0.1", "TextureFile checker.png"}));
@@ -87,7 +86,7 @@ TEST_F(PlyWriterTest, LargeIdsAreWrittenAsDouble) {
 TEST_F(PlyWriterTest, ParticlesComeBack) {
   const ParticleFrame frame = particle_frame(50);
   write_particles_ply(path("p.ply"), frame);
-  const scenes::ParticleState state = scenes::particles_from_ply(path("p.ply"));
+  const ParticleState state = particles_from_ply(path("p.ply"));
   EXPECT_EQ(state.ids, frame.state.ids);
   for (std::size_t i = 0; i < state.ids.size(); ++i) {
     EXPECT_EQ(state.positions[i], as_float(frame.state.positions[i]));
@@ -95,10 +94,10 @@ TEST_F(PlyWriterTest, ParticlesComeBack) {
     EXPECT_EQ(state.rest_positions[i], as_float(frame.state.rest_positions[i]));
     EXPECT_EQ(state.densities[i], as_float(frame.state.densities[i]));
   }
-  const scenes::PlyFile ply = scenes::read_ply(path("p.ply"));
+  const PlyFile ply = read_ply(path("p.ply"));
   EXPECT_EQ(ply.vertex.at("green")[3], frame.colors[3][1]);
   write_particles_ply(path("none.ply"), particle_frame(0));
-  EXPECT_TRUE(scenes::particles_from_ply(path("none.ply")).ids.empty());
+  EXPECT_TRUE(particles_from_ply(path("none.ply")).ids.empty());
 }
 
 TEST_F(PlyWriterTest, ForeignSurfacesAreRefusedWithTheReason) {
@@ -120,9 +119,9 @@ TEST_F(PlyWriterTest, EveryTruncationIsNoticed) {
   write_surface_ply(path("a.ply"), frame);
   const std::string bytes = read_text(path("a.ply"));
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    EXPECT_THROW(scenes::parse_ply(std::string_view(bytes).substr(0, size), "b.ply"), scenes::SceneError) << size;
+    EXPECT_THROW(parse_ply(std::string_view(bytes).substr(0, size), "b.ply"), InputError) << size;
   }
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

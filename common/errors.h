@@ -1,11 +1,12 @@
-// Errors that end the program, and what its exit status is then.
+// Errors that end a program, and what its exit status is then.
 #pragma once
 
 #include <stdexcept>
 
-namespace flowskin::tools {
+namespace flowskin {
 
-/// The input or the command line is wrong; the message says file, place in it and what was expected. Exit status 2.
+/// A file that is read or a command line is wrong; the message says which file, which place in it, and what was
+/// expected. Exit status 2.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -15,4 +16,4 @@ struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace flowskin::tools
+}  // namespace flowskin

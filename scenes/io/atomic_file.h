@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 
 /// A file in the making, written aside under a name that begins with a dot and ends with .part.
 class AtomicFile {
@@ -41,4 +41,4 @@ void remove_drafts() noexcept;
 /// Removes what killed processes left behind in a folder (not below it).
 void remove_stale_drafts(const std::filesystem::path& folder);
 
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

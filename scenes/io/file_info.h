@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 
 struct FileInfo {
   std::vector<std::string> lines;  ///< A description for people, one fact a line.
@@ -17,4 +17,4 @@ struct FileInfo {
 /// @throws InputError where the file cannot be read at all, or is of another kind.
 FileInfo describe_file(const std::filesystem::path& file);
 
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

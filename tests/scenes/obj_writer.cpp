@@ -3,12 +3,12 @@
 #include <charconv>
 #include <set>
 
+#include "common/errors.h"
+#include "scenes/io/frame_files.h"
 #include "scenes/io/obj_reader.h"
-#include "tests/tools/io_fixture.h"
-#include "tools/errors.h"
-#include "tools/io/surface_writers.h"
+#include "tests/scenes/io_fixture.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 class ObjWriterTest : public IoTest {
@@ -27,8 +27,8 @@ class ObjWriterTest : public IoTest {
 void expect_near_float(double read, double written) { EXPECT_NEAR(read, written, 1.3e-7 * std::abs(written) + 1e-40); }
 
 TEST_F(ObjWriterTest, TinyobjloaderReadsTheSame) {
-  for (const char* mapping : {"box", "spherical", "planar"}) {
-    const SurfaceFrame frame = sphere_frame(3, mapping);
+  for (const Charts charts : {Charts::one, Charts::six}) {
+    const SurfaceFrame frame = sphere_frame(3, charts);
     round_trip(frame);
     const tinyobj::attrib_t& attributes = reader_.GetAttrib();
     ASSERT_EQ(attributes.vertices.size(), 3 * frame.mesh.positions.size());
@@ -65,10 +65,10 @@ TEST_F(ObjWriterTest, EveryVertexIsReferenced) {
 TEST_F(ObjWriterTest, SharesEqualTextureCoordinates) {
   // With one chart, every vertex has one pair; with the box's six charts, there are more, but far from three a
   // triangle.
-  const SurfaceFrame planar = sphere_frame(3, "planar");
+  const SurfaceFrame planar = sphere_frame(3, Charts::one);
   round_trip(planar);
   EXPECT_EQ(reader_.GetAttrib().texcoords.size() / 2, planar.mesh.positions.size());
-  const SurfaceFrame box = sphere_frame(3, "box");
+  const SurfaceFrame box = sphere_frame(3, Charts::six);
   round_trip(box);
   EXPECT_GT(reader_.GetAttrib().texcoords.size() / 2, box.mesh.positions.size());
   EXPECT_LT(reader_.GetAttrib().texcoords.size() / 2, 2 * box.mesh.positions.size());
@@ -99,7 +99,7 @@ TEST_F(ObjWriterTest, NumbersComeBackToTheLastBit) {
 TEST_F(ObjWriterTest, OurReaderReadsItToo) {
   const SurfaceFrame frame = sphere_frame();
   write_surface_obj(path("a.obj"), frame, "a.mtl");
-  EXPECT_EQ(scenes::read_obj(path("a.obj")).triangles, frame.mesh.triangles);
+  EXPECT_EQ(read_obj(path("a.obj")).triangles, frame.mesh.triangles);
 }
 
 TEST_F(ObjWriterTest, RefusesBadFrames) {
@@ -131,4 +131,4 @@ TEST_F(ObjWriterTest, AnEmptySurfaceIsAFileWithoutVertices) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

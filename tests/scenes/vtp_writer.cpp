@@ -1,10 +1,10 @@
 #include <cstring>
 
-#include "tests/tools/io_fixture.h"
-#include "tools/errors.h"
-#include "tools/io/surface_writers.h"
+#include "common/errors.h"
+#include "scenes/io/frame_files.h"
+#include "tests/scenes/io_fixture.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 /// A VTP file taken apart by hand, as the VTK file formats document describes it.
@@ -144,4 +144,4 @@ TEST_F(VtpWriterTest, CollectionNamesTimesAndFiles) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

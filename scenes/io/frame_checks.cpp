@@ -1,11 +1,11 @@
-#include "tools/io/frame_checks.h"
+#include "scenes/io/frame_checks.h"
 
 #include <cmath>
 #include <string>
 
-#include "tools/errors.h"
+#include "common/errors.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 /// Checks the arrays of one frame; `item` is "vertex" or "particle".
@@ -85,7 +85,7 @@ void check_frame(const SurfaceFrame& frame, const std::filesystem::path& file) {
 }
 
 void check_frame(const ParticleFrame& frame, const std::filesystem::path& file) {
-  const scenes::ParticleState& state = frame.state;
+  const ParticleState& state = frame.state;
   const FrameChecker checker(file, "particle", state.positions.size());
   checker.finite(state.positions, "positions");
   checker.finite(state.velocities, "velocities");
@@ -98,4 +98,4 @@ void check_frame(const ParticleFrame& frame, const std::filesystem::path& file) 
       checker.fail("the density of particle " + std::to_string(i) + " is not a finite number");
 }
 
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

@@ -2,12 +2,12 @@
 #include <concepts>
 #include <string>
 
-#include "tools/io/atomic_file.h"
-#include "tools/io/byte_buffer.h"
-#include "tools/io/frame_checks.h"
-#include "tools/io/surface_writers.h"
+#include "scenes/io/atomic_file.h"
+#include "scenes/io/byte_buffer.h"
+#include "scenes/io/frame_checks.h"
+#include "scenes/io/frame_files.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 /// Collects arrays: their descriptions as XML, their values one after the other, each led by its length in bytes.
@@ -141,7 +141,7 @@ void write_surface_vtp(const std::filesystem::path& file, const SurfaceFrame& fr
 
 void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame& frame) {
   check_frame(frame, file);
-  const scenes::ParticleState& state = frame.state;
+  const ParticleState& state = frame.state;
   ByteBuffer xml;
   VtpArrays arrays;
   begin_piece(xml, state.time, state.positions.size(), state.positions.size(), 0);
@@ -183,4 +183,4 @@ void write_pvd(const std::filesystem::path& file, const std::vector<std::pair<do
   write_file(file, xml.view());
 }
 
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

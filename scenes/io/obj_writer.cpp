@@ -1,10 +1,10 @@
 // Wavefront OBJ and MTL.
-#include "tools/io/atomic_file.h"
-#include "tools/io/byte_buffer.h"
-#include "tools/io/frame_checks.h"
-#include "tools/io/surface_writers.h"
+#include "scenes/io/atomic_file.h"
+#include "scenes/io/byte_buffer.h"
+#include "scenes/io/frame_checks.h"
+#include "scenes/io/frame_files.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 /// Texture coordinates of all corners, equal ones at the same vertex kept once.
@@ -87,4 +87,4 @@ void write_material(const std::filesystem::path& file, const std::string& textur
                  texture_file + "\n");
 }
 
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

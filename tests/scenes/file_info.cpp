@@ -1,10 +1,10 @@
-#include "tools/io/file_info.h"
+#include "scenes/io/file_info.h"
 
-#include "tests/tools/io_fixture.h"
-#include "tools/errors.h"
-#include "tools/io/surface_writers.h"
+#include "common/errors.h"
+#include "scenes/io/frame_files.h"
+#include "tests/scenes/io_fixture.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 class FileInfoTest : public IoTest {};
@@ -82,4 +82,4 @@ TEST_F(FileInfoTest, SaysWhatCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

@@ -1,4 +1,4 @@
-#include "tools/io/atomic_file.h"
+#include "scenes/io/atomic_file.h"
 
 #include <sched.h>
 #include <sys/mount.h>
@@ -10,10 +10,10 @@
 #include <thread>
 #include <vector>
 
-#include "tests/tools/io_fixture.h"
-#include "tools/errors.h"
+#include "common/errors.h"
+#include "tests/scenes/io_fixture.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 class AtomicFileTest : public IoTest {};
@@ -117,4 +117,4 @@ TEST_F(AtomicFileTest, ThreadsThatWriteTheSameFileLeaveOneOfThem) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

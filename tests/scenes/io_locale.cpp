@@ -2,12 +2,12 @@
 #include <clocale>
 #include <locale>
 
+#include "scenes/io/frame_files.h"
 #include "scenes/io/obj_reader.h"
 #include "scenes/io/ply_reader.h"
-#include "tests/tools/io_fixture.h"
-#include "tools/io/surface_writers.h"
+#include "tests/scenes/io_fixture.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 struct GermanNumbers : std::numpunct<char> {
@@ -53,9 +53,9 @@ TEST_F(LocaleTest, ReadersUnderstandPointsInAnyLocale) {
                                      "property float z\nend_header\n0.5 1.25 -3e-1\n");
   std::locale::global(std::locale(std::locale::classic(), new GermanNumbers));
   std::setlocale(LC_ALL, "de_DE.UTF-8");
-  EXPECT_TRUE(scenes::read_obj(obj).positions[0].isApprox(Vec3(0.5, 1.25, -0.3), 1e-6));
-  EXPECT_EQ(scenes::particles_from_ply(ply).positions[0], Vec3(0.5, 1.25, -0.3));
+  EXPECT_TRUE(read_obj(obj).positions[0].isApprox(Vec3(0.5, 1.25, -0.3), 1e-6));
+  EXPECT_EQ(particles_from_ply(ply).positions[0], Vec3(0.5, 1.25, -0.3));
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

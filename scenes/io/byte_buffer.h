@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 
 /// Grows by binary little-endian values and by numbers as text, and is then written in one go.
 class ByteBuffer {
@@ -51,4 +51,4 @@ class ByteBuffer {
   std::string bytes_;
 };
 
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

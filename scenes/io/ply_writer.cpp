@@ -2,15 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/errors.h"
+#include "scenes/io/atomic_file.h"
+#include "scenes/io/byte_buffer.h"
+#include "scenes/io/frame_checks.h"
+#include "scenes/io/frame_files.h"
 #include "scenes/io/ply_reader.h"
-#include "scenes/scene_file.h"
-#include "tools/errors.h"
-#include "tools/io/atomic_file.h"
-#include "tools/io/byte_buffer.h"
-#include "tools/io/frame_checks.h"
-#include "tools/io/surface_writers.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 /// PLY has no 64-bit integers: ids beyond 32 bits are written as double, exact up to 2^53.
@@ -107,16 +106,8 @@ void add_faces(ByteBuffer& ply, const SurfaceFrame& frame) {
   }
 }
 
-scenes::PlyFile read_columns(const std::filesystem::path& file) {
-  try {
-    return scenes::read_ply(file);
-  } catch (const scenes::SceneError& error) {
-    throw InputError(error.what());
-  }
-}
-
 /// Two columns, or nothing where the file has none of that name.
-std::vector<Vec2f> read_confidence(const scenes::PlyFile& ply) {
+std::vector<Vec2f> read_confidence(const PlyFile& ply) {
   const auto weak = ply.vertex.find("confidence"), strong = ply.vertex.find("confidence_strong");
   if (weak == ply.vertex.end() || strong == ply.vertex.end()) return {};
   std::vector<Vec2f> result(ply.vertex_count);
@@ -125,8 +116,7 @@ std::vector<Vec2f> read_confidence(const scenes::PlyFile& ply) {
 }
 
 /// Coordinates of the triangles' corners. @throws InputError where there are not six finite numbers a triangle.
-std::vector<std::array<Vec2f, 3>> read_corners(const scenes::PlyFile& ply, const std::string& list,
-                                               const std::string& file) {
+std::vector<std::array<Vec2f, 3>> read_corners(const PlyFile& ply, const std::string& list, const std::string& file) {
   const auto found = ply.face_lists.find(list);
   if (found == ply.face_lists.end() || found->second.size() != 6 * ply.triangles.size())
     throw InputError(file + ": no list \"" + list + "\" of six numbers a triangle: a surface written by FlowSkin was " +
@@ -141,8 +131,7 @@ std::vector<std::array<Vec2f, 3>> read_corners(const scenes::PlyFile& ply, const
 }
 
 /// Three float columns as vectors. @throws InputError where one is missing or holds no finite number.
-std::vector<Vec3> read_vectors(const scenes::PlyFile& ply, const std::array<const char*, 3>& names,
-                               const std::string& file) {
+std::vector<Vec3> read_vectors(const PlyFile& ply, const std::array<const char*, 3>& names, const std::string& file) {
   std::vector<Vec3> result(ply.vertex_count);
   for (int k = 0; k < 3; ++k) {
     const auto column = ply.vertex.find(names[k]);
@@ -157,7 +146,7 @@ std::vector<Vec3> read_vectors(const scenes::PlyFile& ply, const std::array<cons
   return result;
 }
 
-std::vector<std::uint64_t> read_ids(const scenes::PlyFile& ply, const std::string& file) {
+std::vector<std::uint64_t> read_ids(const PlyFile& ply, const std::string& file) {
   const auto column = ply.vertex.find("id");
   if (column == ply.vertex.end())
     throw InputError(file + ": no vertex property \"id\": a surface written by FlowSkin was expected");
@@ -204,7 +193,7 @@ void write_surface_ply(const std::filesystem::path& file, const SurfaceFrame& fr
 
 void write_particles_ply(const std::filesystem::path& file, const ParticleFrame& frame) {
   check_frame(frame, file);
-  const scenes::ParticleState& state = frame.state;
+  const ParticleState& state = frame.state;
   const IdColumn id_column(state.ids, file);
   ByteBuffer ply;
   ply.reserve(2000 + 61 * state.positions.size());
@@ -233,11 +222,11 @@ void write_particles_ply(const std::filesystem::path& file, const ParticleFrame&
 }
 
 std::vector<Vec2f> read_surface_confidence(const std::filesystem::path& file) {
-  return read_confidence(read_columns(file));
+  return read_confidence(read_ply(file));
 }
 
 void read_surface_blend(const std::filesystem::path& file, SurfaceFrame& frame) {
-  const scenes::PlyFile ply = read_columns(file);
+  const PlyFile ply = read_ply(file);
   const auto blend = ply.vertex.find("texture_blend");
   if (blend == ply.vertex.end()) return;
   frame.texture_blend.assign(blend->second.begin(), blend->second.end());
@@ -250,7 +239,7 @@ void read_surface_blend(const std::filesystem::path& file, SurfaceFrame& frame) 
 
 tracking::SurfaceMesh read_surface_ply(const std::filesystem::path& file) {
   const std::string name = file.string();
-  const scenes::PlyFile ply = read_columns(file);
+  const PlyFile ply = read_ply(file);
   tracking::SurfaceMesh mesh;
   mesh.positions = read_vectors(ply, {"x", "y", "z"}, name);
   mesh.rest_positions = read_vectors(ply, {"rest_x", "rest_y", "rest_z"}, name);
@@ -261,4 +250,4 @@ tracking::SurfaceMesh read_surface_ply(const std::filesystem::path& file) {
   return mesh;
 }
 
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

@@ -1,4 +1,4 @@
-#include "tools/io/file_info.h"
+#include "scenes/io/file_info.h"
 
 #include <fmt/format.h>
 
@@ -8,18 +8,17 @@
 #include <functional>
 #include <stdexcept>
 
+#include "common/errors.h"
+#include "scenes/io/frames.h"
 #include "scenes/io/obj_reader.h"
 #include "scenes/io/particle_file.h"
 #include "scenes/io/ply_reader.h"
-#include "scenes/scene_file.h"
 #include "scenes/sources/particle_spacing.h"
-#include "tools/errors.h"
-#include "tools/frame_data.h"
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/self_intersections.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 namespace {
 
 using Positions = std::vector<Vec3>;
@@ -41,7 +40,7 @@ std::string property_line(const std::map<std::string, std::vector<double>>& colu
   return "properties: " + names;
 }
 
-Positions vertex_positions(const scenes::PlyFile& ply, const std::string& name) {
+Positions vertex_positions(const PlyFile& ply, const std::string& name) {
   Positions positions(ply.vertex_count);
   constexpr std::array<const char*, 3> axes{"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
@@ -100,15 +99,15 @@ std::string range_line(const char* what, const char* unit, const std::vector<T>&
                      sum / static_cast<double>(values.size()));
 }
 
-void describe_particles(FileInfo& info, const std::string& name, const scenes::ParticleTable& table) {
-  const scenes::ParticleFile file = scenes::particles_from_table(table, name);
-  const scenes::ParticleState& state = file.state;
+void describe_particles(FileInfo& info, const std::string& name, const ParticleTable& table) {
+  const ParticleFile file = particles_from_table(table, name);
+  const ParticleState& state = file.state;
   info.lines.push_back(fmt::format("particles: {} ({})", state.positions.size(), table.format));
   info.lines.push_back(property_line(table.columns));
   if (table.time) info.lines.push_back(fmt::format("time: {:.6g} s", *table.time));
   if (state.positions.empty()) return;
   info.lines.push_back(bounds_line(state.positions));
-  if (const double spacing = scenes::estimated_spacing(state.positions); spacing > 0)
+  if (const double spacing = estimated_spacing(state.positions); spacing > 0)
     info.lines.push_back(fmt::format("spacing: about {:.4g} m (estimated from the distances of neighbours)", spacing));
   if (file.has_velocities)
     info.lines.push_back(range_line("speed", "m/s", state.velocities, [](const Vec3& v) { return v.norm(); }));
@@ -120,24 +119,26 @@ void describe_particles(FileInfo& info, const std::string& name, const scenes::P
   info.lines.emplace_back("sound: all values finite");
 }
 
-FileInfo describe(const std::filesystem::path& file) {
+}  // namespace
+
+FileInfo describe_file(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   FileInfo info;
   if (extension == ".obj") {
-    const sph::TriangleMesh mesh = scenes::read_obj(file);
+    const sph::TriangleMesh mesh = read_obj(file);
     describe_surface(info, mesh.positions, mesh.triangles);
   } else if (extension == ".ply") {
-    const scenes::PlyFile ply = scenes::read_ply(file);
+    const PlyFile ply = read_ply(file);
     if (ply.triangles.empty()) {
-      describe_particles(info, file.string(), scenes::table_from_ply(ply));
+      describe_particles(info, file.string(), table_from_ply(ply));
     } else {
       describe_surface(info, vertex_positions(ply, file.string()), ply.triangles);
       info.lines.insert(info.lines.begin() + 1, property_line(ply.vertex));
     }
-  } else if (scenes::is_particle_extension(extension)) {
-    const scenes::ParticleTable table = scenes::read_particle_table(file);
+  } else if (is_particle_extension(extension)) {
+    const ParticleTable table = read_particle_table(file);
     if (table.polygons > 0)
       throw InputError(fmt::format("{}: a mesh with {} polygons; of meshes, OBJ and PLY files can be looked at",
                                    file.string(), table.polygons));
@@ -149,14 +150,4 @@ FileInfo describe(const std::filesystem::path& file) {
   return info;
 }
 
-}  // namespace
-
-FileInfo describe_file(const std::filesystem::path& file) {
-  try {
-    return describe(file);
-  } catch (const scenes::SceneError& error) {
-    throw InputError(error.what());
-  }
-}
-
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes

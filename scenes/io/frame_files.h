@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "tools/frame_data.h"
+#include "scenes/io/frames.h"
 
-namespace flowskin::tools {
+namespace flowskin::scenes {
 
 /// frame_NNNN.obj: v, vt (one a corner, equal ones shared), vn, usemtl; `material_file` is the MTL's name beside it.
 void write_surface_obj(const std::filesystem::path& file, const SurfaceFrame& frame, const std::string& material_file);
@@ -36,4 +36,4 @@ void read_surface_blend(const std::filesystem::path& file, SurfaceFrame& frame);
 /// Its confidences, or nothing where it has none. @throws InputError
 std::vector<Vec2f> read_surface_confidence(const std::filesystem::path& file);
 
-}  // namespace flowskin::tools
+}  // namespace flowskin::scenes
