@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/errors.h"
 #include "scenes/io/obj_reader.h"
 
 namespace flowskin::scenes {

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/errors.h"
 #include "scenes/scene_checks.h"
 
 namespace flowskin::scenes {
