@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "surfaces/dense_distance.h"
 #include "surfaces/scene_list.h"
 #include "surfaces/surface_checks.h"
 
@@ -38,7 +39,9 @@ int print_table(const std::vector<std::string>& arguments) {
     for (const auto& violation : violations(scenes.back())) std::printf("%s\n", violation.sentence.c_str());
     std::fflush(stdout);
   }
-  std::printf("\n%s\n%s", worst_table(scenes).c_str(), return_table(scenes).c_str());
+  std::printf("\nHausdorff: %d random points a triangle, seed %llu\n", kSamplesPerTriangle,
+              static_cast<unsigned long long>(kSampleSeed));
+  std::printf("%s\n%s", worst_table(scenes).c_str(), return_table(scenes).c_str());
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include "common/quantile.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/make_source.h"
+#include "surfaces/dense_distance.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tracking/advection/particle_paths.h"
 #include "tracking/advection/projection.h"
@@ -22,7 +23,6 @@
 namespace flowskin::surfaces {
 namespace {
 
-using quantile;
 using tracking::MetaballField;
 using tracking::SurfaceMesh;
 using tracking::Triangle;
@@ -134,7 +134,8 @@ class Run {
     measures.fresh_shape = shape_of(comparison.fresh);
     measures.borderline = !measures.shape.same_topology(measures.fresh_shape) && comparison.same_topology();
     measures.volume_error = std::abs(comparison.volume_error());
-    measures.hausdorff = comparison.hausdorff / edge;
+    measures.hausdorff_at_corners = comparison.hausdorff / edge;
+    measures.hausdorff = dense_hausdorff({mesh.positions, mesh.triangles}, fresh, small_volume) / edge;
   }
 
   /// Which of the two encloses what the field does.

@@ -60,8 +60,9 @@ struct FrameMeasures {
   /// Of tracked surface and fresh extraction, relative to an extraction with edges a third as long; known in frames
   /// in which volume_error is beyond its limit.
   double true_volume_error = 0, fresh_true_volume_error = 0;
-  double hausdorff = 0;       ///< In target edge lengths.
-  double field_distance = 0;  ///< Largest |f| / |grad f| at a vertex, in effective radii.
+  double hausdorff = 0;  ///< Of points spread densely over both surfaces (dense_distance.h), in target edge lengths.
+  double hausdorff_at_corners = 0;  ///< Of vertices and triangle centres alone, where the tracker looks, too.
+  double field_distance = 0;        ///< Largest |f| / |grad f| at a vertex, in effective radii.
   double narrow_triangles = 0, odd_edges = 0;
   double ids_kept = 1;          ///< Of the vertices of the frame before.
   bool change = false;          ///< The fluid's topology is not that of the frame before, small parts included.

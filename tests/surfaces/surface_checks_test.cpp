@@ -19,7 +19,7 @@ SceneMeasures sound_scene() {
     FrameMeasures frame;
     frame.frame = k;
     frame.shape = frame.fresh_shape = {1, 2, 0};
-    frame.hausdorff = limit::hausdorff;
+    frame.hausdorff = frame.hausdorff_at_corners = limit::hausdorff;
     frame.volume_error = limit::volume;
     frame.field_distance = limit::field_distance;
     frame.narrow_triangles = limit::narrow_triangles;
@@ -48,6 +48,7 @@ TEST(SurfaceChecks, EveryPlantedFaultIsNamedWithItsFrame) {
       {"components", [](auto& f) { f.shape.components = 2; }},
       {"Euler", [](auto& f) { f.shape.euler = 0; }},
       {"Hausdorff", [](auto& f) { f.hausdorff = 0.51; }},
+      {"vertices and centres", [](auto& f) { f.hausdorff_at_corners = 0.51; }},
       {"volume", [](auto& f) { f.volume_error = 0.006; }},
       {"|f|", [](auto& f) { f.field_distance = 1.1e-3; }},
       {"10 degrees", [](auto& f) { f.narrow_triangles = 0.0011; }},

@@ -35,6 +35,8 @@ const std::vector<Line>& lines() {
        [](const auto& f) { return f.borderline ? 0 : difference(f.shape.euler, f.fresh_shape.euler); }, "{:.0f}"},
       {"Hausdorff distance in edge lengths", "Hausdorff", limit::hausdorff, [](const auto& f) { return f.hausdorff; },
        "{:.2f}"},
+      {"Hausdorff distance of vertices and centres in edge lengths", "at corners", limit::hausdorff,
+       [](const auto& f) { return f.hausdorff_at_corners; }, "{:.2f}"},
       {"relative volume error", "volume %", limit::volume, [](const auto& f) { return f.volume_error; }, "{:.2f}%"},
       {"|f|/|grad f| in effective radii", "|f| 1e-3", limit::field_distance,
        [](const auto& f) { return f.field_distance; }, "{:.3f}m"},

@@ -176,6 +176,33 @@ TEST(Material, IdsStayWithVerticesThatStay) {
   EXPECT_LT(kept, static_cast<int>(changed.ids.size()));
 }
 
+// A sheet thinner than the reach has moved along its normal, so that its lower side is where its upper side was.
+TEST(Material, IdsDoNotGoFromOneSideOfAThinSheetToTheOther) {
+  constexpr int kSide = 6;
+  SurfaceGeometry sheet;
+  std::vector<Vec3> normals;
+  for (const double z : {0.0, -0.2}) {
+    for (int i = 0; i <= kSide; ++i) {
+      for (int j = 0; j <= kSide; ++j) {
+        sheet.positions.emplace_back(kEdge * i, kEdge * j, z);
+        normals.emplace_back(0, 0, z < 0 ? -1 : 1);
+      }
+    }
+  }
+  const int lower = (kSide + 1) * (kSide + 1);
+  test::add_grid_triangles(0, kSide, sheet.triangles);
+  test::add_grid_triangles(lower, kSide, sheet.triangles);
+  for (auto t = sheet.triangles.size() / 2; t < sheet.triangles.size(); ++t)
+    std::swap(sheet.triangles[t][1], sheet.triangles[t][2]);
+  const SurfaceMesh old_mesh = with_material(sheet, 0);
+  const Particles particles = test::particles_at(ball_of_particles(2.3));
+  const MetaballField field(particles.positions, {}, kField);
+  SurfaceGeometry moved = sheet;
+  for (Vec3& x : moved.positions) x.z() += 0.15;
+  const SurfaceMesh mesh = carry_material(old_mesh, moved, normals, field, particles, kMaterial);
+  EXPECT_EQ(mesh.ids, old_mesh.ids);
+}
+
 // Smooth motion scatters nothing; noise of the rest positions comes back, a little larger by that of the neighbours.
 TEST(MaterialScatter, IsTheNoiseOfTheRestPositions) {
   Particles particles = test::particles_at(ball_of_particles(4.2));

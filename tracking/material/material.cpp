@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "common/closest_point.h"
-#include "tracking/mesh/point_tree.h"
+#include "tracking/mesh/mesh_measures.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -213,13 +213,8 @@ Vec3 MaterialCarrier::place(const Vec3& x, const Source& source, const std::vect
   return far.triangle < 0 ? x : x + interpolated(far, on_mesh) - interpolated(far, positions_);
 }
 
-std::vector<int> same_vertices(const std::vector<Vec3>& old_places, const std::vector<Vec3>& new_places, double reach) {
-  std::vector<int> old_of_new = nearest_points(old_places, new_places, reach);
-  const std::vector<int> new_of_old = nearest_points(new_places, old_places, reach);
-  for (int v = 0; v < std::ssize(old_of_new); ++v) {
-    if (old_of_new[v] >= 0 && new_of_old[old_of_new[v]] != v) old_of_new[v] = -1;
-  }
-  return old_of_new;
+std::vector<int> same_vertices(const SurfacePoints& old_vertices, const SurfacePoints& new_vertices, double reach) {
+  return paired_points(old_vertices, new_vertices, reach, 0);
 }
 
 SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& geometry,
@@ -235,7 +230,9 @@ SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& g
   MaterialCarrier(old_mesh.positions, old_mesh.triangles, field, particles, settings)
       .append_material(old_mesh, mesh.positions, normals, mesh);
 
-  const std::vector<int> same = same_vertices(old_mesh.positions, mesh.positions, settings.same_vertex);
+  const std::vector<Vec3> old_normals = vertex_normals(old_mesh.positions, old_mesh.triangles);
+  const std::vector<int> same =
+      same_vertices({old_mesh.positions, old_normals}, {mesh.positions, normals}, settings.same_vertex);
   for (int v = 0; v < count; ++v) mesh.ids[v] = same[v] >= 0 ? old_mesh.ids[same[v]] : mesh.next_id++;
   return mesh;
 }

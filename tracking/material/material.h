@@ -7,6 +7,7 @@
 #include "common/closest_point.h"
 #include "tracking/extraction/marching_cubes.h"
 #include "tracking/field/metaball_field.h"
+#include "tracking/mesh/point_tree.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/particles.h"
 
@@ -86,9 +87,10 @@ class MaterialCarrier {
 /// The places of layer k of the particles; none where they are unknown.
 const std::vector<Vec3>& particle_layer(const Particles& particles, std::size_t k);
 
-/// For each new vertex the old one that it goes on as, under its id: where each is the other's nearest and they are
-/// nearer than `reach` (m); -1: none.
-std::vector<int> same_vertices(const std::vector<Vec3>& old_places, const std::vector<Vec3>& new_places, double reach);
+/// For each new vertex the old one that it goes on as, under its id; -1: none. Of the vertices nearer than `reach` (m)
+/// that look the same way (less than 90 degrees off), each is the other's nearest: no id goes from one side of a thin
+/// sheet to the other. Both when regions are replaced and when the whole mesh is.
+std::vector<int> same_vertices(const SurfacePoints& old_vertices, const SurfacePoints& new_vertices, double reach);
 
 /// A mesh of fresh geometry with its attributes: rest positions and layers as MaterialCarrier says, ids as
 /// same_vertices says; all others get new ids. Velocities are zero.

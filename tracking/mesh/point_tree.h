@@ -22,7 +22,15 @@ struct PointCloud {
 using PointTree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>, PointCloud, 3, int>;
 
-/// Number of the nearest one of `targets` for each query, -1 where none is within reach (m).
-std::vector<int> nearest_points(const std::vector<Vec3>& targets, const std::vector<Vec3>& queries, double reach);
+/// Points of a surface with its normals there, of length 1; keeps references.
+struct SurfacePoints {
+  const std::vector<Vec3>& places;
+  const std::vector<Vec3>& normals;
+};
+
+/// For each point of the second surface the one of the first that it pairs with, -1: none. Points are candidates for
+/// each other where they are nearer than `reach` (m) and their normals make an angle with a cosine above `cosine`; each
+/// of a pair is the other's nearest candidate.
+std::vector<int> paired_points(const SurfacePoints& first, const SurfacePoints& second, double reach, double cosine);
 
 }  // namespace flowskin::tracking

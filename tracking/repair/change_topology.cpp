@@ -200,15 +200,17 @@ class MeshUnderRepair {
       const bool is_old = v < static_cast<int>(old_count_);
       if (is_old != (used[v] != 0)) (is_old ? gone : born).push_back(v);
     }
-    const auto places = [&](const std::vector<int>& vertices) {
+    const auto chosen = [](const std::vector<Vec3>& values, const std::vector<int>& vertices) {
       std::vector<Vec3> result;
-      for (int vertex : vertices) result.push_back(mend_.positions[vertex]);
+      for (int vertex : vertices) result.push_back(values[vertex]);
       return result;
     };
-    const std::vector<int> same = same_vertices(places(gone), places(born), same_vertex);
+    const std::vector<Vec3> old_places = chosen(mend_.positions, gone), old_normals = chosen(mend_.normals, gone);
+    const std::vector<Vec3> places = chosen(mend_.positions, born), normals = chosen(mend_.normals, born);
+    const std::vector<int> same = same_vertices({old_places, old_normals}, {places, normals}, same_vertex);
     for (std::size_t i = 0; i < born.size(); ++i) {
       const int old = same[i] < 0 ? -1 : gone[same[i]];
-      const bool goes_on = old >= 0 && mend_.normals[old].dot(mend_.normals[born[i]]) > 0;
+      const bool goes_on = old >= 0;
       mesh_.ids[born[i]] = goes_on ? mesh_.ids[old] : mesh_.next_id++;
       report.born += goes_on ? 0 : 1;
     }

@@ -189,17 +189,19 @@ void keep_old_vertices(const FieldGrid& fresh, const MeshToMend& whole, const Me
   });
   const int first = mesh.old_count(), count = static_cast<int>(mesh.positions().size());
   if (dropped.empty() || first == count) return;
-  std::vector<Vec3> old_places;
-  for (int vertex : dropped) old_places.push_back(whole.positions[vertex]);
-  const std::vector<Vec3> new_places(mesh.positions().begin() + first, mesh.positions().end());
-  const std::vector<int> old_of = nearest_points(old_places, new_places, kSameVertex * edge_length);
-  const std::vector<int> new_of = nearest_points(new_places, old_places, kSameVertex * edge_length);
+  std::vector<Vec3> old_places, old_normals;
+  for (int vertex : dropped) {
+    old_places.push_back(whole.positions[vertex]);
+    old_normals.push_back(whole.normals[vertex]);
+  }
+  const std::vector<Vec3> places(mesh.positions().begin() + first, mesh.positions().end());
+  const std::vector<Vec3> normals(mesh.normals().begin() + first, mesh.normals().end());
+  const std::vector<int> old_of =
+      paired_points({old_places, old_normals}, {places, normals}, kSameVertex * edge_length, kSameSide);
   const MeshAdjacency topology = mesh.topology();
   for (int v = first; v < count; ++v) {
-    const int old = old_of[v - first];
-    if (!mesh.is_free(v) || old < 0 || new_of[old] != v - first) continue;
-    const int vertex = dropped[old];
-    if (!(whole.normals[vertex].dot(mesh.normals()[v]) > kSameSide)) continue;
+    if (!mesh.is_free(v) || old_of[v - first] < 0) continue;
+    const int vertex = dropped[old_of[v - first]];
     if (!may_move(mesh, topology, v, whole.positions[vertex], edge_length)) continue;
     mesh.positions()[v] = whole.positions[vertex];
     mesh.make_old(v, vertex);
