@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "common/vectors.h"
@@ -10,6 +11,11 @@ namespace flowskin::tracking {
 
 using flowskin::Mat3;
 using flowskin::Vec3;
+
+class Wall;  // tracking/field/field_walls.h
+
+/// What the fluid lies on. A wall that moves knows by itself where it is at each time; all states of a source share it.
+using Walls = std::vector<std::shared_ptr<const Wall>>;
 
 /// Particles at one time, in order of ascending id; all arrays have one entry a particle. From a recording, less may be
 /// known: docs/track.md says what the tracker makes of it.
@@ -24,6 +30,7 @@ struct Particles {
   /// a particle each, or none: unknown.
   std::vector<std::vector<Vec3>> layers{};
   bool has_lasting_ids = true;  ///< An id names the same particle in the next state; false: it only counts.
+  Walls walls{};                ///< Empty: there are none, or none that the surface should know of.
 };
 
 }  // namespace flowskin::tracking

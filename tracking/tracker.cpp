@@ -54,6 +54,8 @@ TrackerSettings filled_in(TrackerSettings settings) {
   if (settings.field.radius == 0) settings.field = default_field_settings(settings.spacing);
   require(std::isfinite(settings.field.radius) && settings.field.radius > 0, "field.radius", settings.field.radius,
           "positive (m), or 0 for the default");
+  require(settings.field.wall_share >= 0 && settings.field.wall_share <= 0.5, "field.wall_share",
+          settings.field.wall_share, "from 0 to 0.5 (thresholds)");
   require(settings.field.threshold > 0, "field.threshold", settings.field.threshold, "positive");
   require(settings.field.weight > 0, "field.weight", settings.field.weight, "positive");
   if (settings.edge_length == 0) settings.edge_length = kDefaultEdgeInSpacings * settings.spacing;
@@ -100,6 +102,7 @@ class TrackerImpl {
   void restore(TrackerState state) {
     check(state.particles);
     check_mesh(state.mesh);
+    state.particles.walls = particles_.walls;
     state_ = std::move(state);
     rebuild_field();
     topology_ = build_adjacency(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
@@ -146,8 +149,7 @@ class TrackerImpl {
 
   void rebuild_field() {
     field_.reset();
-    if (!particles_.positions.empty())
-      field_.emplace(field_of(particles_, settings_.field, settings_.walls_at(particles_.time)));
+    if (!particles_.positions.empty()) field_.emplace(field_of(particles_, settings_.field));
   }
 
   SurfaceGeometry extract_raw() const { return extract_raw_surface(*field_, settings_.edge_length); }
@@ -198,7 +200,7 @@ class TrackerImpl {
     report_.substeps =
         static_cast<int>(std::clamp(std::ceil(paths.longest_path() / limit), 1.0, double{kMostSubsteps}));
     const double duration = paths.end_time() - paths.begin_time();
-    const auto field_at = [&](double time) { return paths.field(time, settings_.field, settings_.walls_at(time)); };
+    const auto field_at = [&](double time) { return paths.field(time, settings_.field); };
     // The velocities of the last call hold at the start, unless particles come or go.
     std::vector<Vec3> first;
     if (paths.blended()) {

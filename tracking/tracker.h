@@ -32,10 +32,6 @@ struct TrackerSettings {
   SmallParts small_parts = SmallParts::keep;  ///< What becomes of them.
   bool topology = true;                       ///< Replace the regions where mesh and field disagree.
   bool guard = true;  ///< Replace the whole mesh where that of regions is off, or does not work.
-  WallsAt walls;      ///< What the fluid lies on; empty: nothing, or nothing that the surface should know of.
-
-  /// The walls at a time (s).
-  FieldWalls walls_at(double time) const { return walls ? walls(time) : FieldWalls{}; }
 };
 
 /// What happened in the last call of Tracker::advance, and how well the mesh fits now.
@@ -64,7 +60,7 @@ struct TrackerReport {
   }
 };
 
-/// The fields of particles and mesh, for archives.
+/// The fields of particles and mesh, for archives. Walls are the source's: they do not change, and are not archived.
 template <class Archive>
 void visit_state(Archive& archive, Particles& p) {
   archive(p.time, p.ids, p.positions, p.velocities, p.rest_positions, p.weights, p.layers, p.has_lasting_ids);
@@ -126,6 +122,7 @@ class Tracker {
   /// What must be kept to go on later.
   const TrackerState& state() const;
   /// Makes this tracker the one whose state this was: with the same settings all that follows is the same, bit for bit.
+  /// The walls stay those of the particles that it was made with.
   /// @throws std::invalid_argument where the state contradicts itself.
   void restore(TrackerState state);
 

@@ -10,6 +10,7 @@
 
 #include "common/state_archive.h"
 #include "sph/geometry/triangle_mesh.h"
+#include "tracking/particles.h"
 
 namespace flowskin::scenes {
 
@@ -31,6 +32,7 @@ struct ParticleState {
   bool has_velocities = true;          ///< false: nobody knows them, they are zero
   bool has_material = true;            ///< false: rest positions are unknown and stand for the positions
   bool has_lasting_ids = true;         ///< false: ids do not name the same particle in the next state
+  tracking::Walls walls{};             ///< Of the scene; the same in all states, so not archived.
 
   template <class Archive>
   void visit(Archive& archive) {

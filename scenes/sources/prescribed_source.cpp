@@ -7,6 +7,7 @@
 #include "common/errors.h"
 #include "scenes/sources/body_particles.h"
 #include "scenes/sources/forward_time.h"
+#include "scenes/sources/wall_points.h"
 
 namespace flowskin::scenes {
 
@@ -20,6 +21,7 @@ PrescribedSource::PrescribedSource(const Scene& scene)
   state_.rest_positions = state_.positions;
   state_.densities.assign(count, 0.0);
   state_.velocities.resize(count);
+  state_.walls = sample_walls(scene);
   if (!motion_.has_closed_form()) grid_positions_ = state_.positions;
   advance_to(0);
 }

@@ -9,6 +9,7 @@
 #include "common/errors.h"
 #include "scenes/sources/forward_time.h"
 #include "scenes/sources/particle_spacing.h"
+#include "scenes/sources/wall_points.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -113,7 +114,9 @@ Vec3 velocity_through(const Vec3& here, const std::vector<Sighting>& others) {
 }  // namespace
 
 RecordedSource::RecordedSource(const Scene& scene)
-    : sequence_(open_sequence(scene.particles.recorded, scene.directory)), spacing_(scene.particles.spacing) {
+    : sequence_(open_sequence(scene.particles.recorded, scene.directory)),
+      spacing_(scene.particles.spacing),
+      walls_(sample_walls(scene)) {
   advance_to(0);
 }
 
@@ -146,6 +149,7 @@ void RecordedSource::advance_to(double time) {
   state_.has_velocities = has_lasting_ids() || sequence_.first.has_velocities;
   state_.has_material = has_lasting_ids() || sequence_.first.has_rest_positions;
   state_.time = time;
+  state_.walls = walls_;
 }
 
 const ParticleState& RecordedSource::file_state(std::size_t k) {

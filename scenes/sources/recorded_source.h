@@ -40,6 +40,7 @@ class RecordedSource : public ParticleSource {
 
   ParticleSequence sequence_;
   double spacing_;
+  tracking::Walls walls_;
   std::map<std::size_t, ParticleState> cache_;
   std::map<std::uint64_t, Vec3> rest_positions_;  ///< By id; where the files have none.
   ParticleState state_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scenes/sources/forward_time.h"
+#include "scenes/sources/wall_points.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -36,7 +37,9 @@ std::string viscosity_solver(const sph::SolverSettings& settings, const sph::Sol
 
 }  // namespace
 
-SimulationSource::SimulationSource(const Scene& scene) : solver_(setup_of(scene)) { take_state(); }
+SimulationSource::SimulationSource(const Scene& scene) : solver_(setup_of(scene)), walls_(sample_walls(scene)) {
+  take_state();
+}
 
 void SimulationSource::advance_to(double time) {
   advance_towards(time, [] { return false; });
@@ -64,6 +67,7 @@ void SimulationSource::take_state() {
             std::move(fluid.densities)};
   state_.fluids = std::move(fluid.fluids);
   state_.viscosities = std::move(fluid.viscosities);
+  state_.walls = walls_;
 }
 
 SourceStatistics SimulationSource::statistics() const {

@@ -26,6 +26,7 @@ class SimulationSource : public ParticleSource {
   void take_state();
 
   sph::Solver solver_;
+  tracking::Walls walls_;
   ParticleState state_;
 };
 

@@ -104,7 +104,7 @@ class Run {
     area_before_ = area;
     measure_triangles(mesh, measures);
     if (!now.positions.empty()) {
-      const MetaballField field = tracking::field_of(now, field_settings, tracker_->settings().walls_at(now.time));
+      const MetaballField field = tracking::field_of(now, field_settings);
       const tracking::SurfaceGeometry fresh = tracking::extract_raw_surface(field, result_.edge_length);
       compare(mesh, fresh, measures);
       if (measures.volume_error > limit::volume) compare_with_finer(field, fresh, measures);

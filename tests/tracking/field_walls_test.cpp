@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "tests/tracking/field_test_bodies.h"
+#include "tracking/advection/particle_paths.h"
 #include "tracking/extraction/extract_surface.h"
 #include "tracking/extraction/sparse_grid.h"
 #include "tracking/field/metaball_field.h"
@@ -176,6 +177,7 @@ TEST(FieldWalls, FilmOfOneLayerOnAWallHasItsThickness) {
 TEST(FieldWalls, TrackerFollowsAFilmThatSlidesOverAWall) {
   const std::vector<Vec3> start = film(8, 1);
   const Vec3 velocity(1, 0, 0);
+  const auto wall = std::make_shared<const Wall>(plane(20), 1.0);
   const auto particles = [&](double time) {
     Particles state;
     state.time = time;
@@ -185,11 +187,13 @@ TEST(FieldWalls, TrackerFollowsAFilmThatSlidesOverAWall) {
       state.velocities.push_back(velocity);
     }
     state.rest_positions = start;
+    state.walls = {wall};
     return state;
   };
   TrackerSettings settings;
   settings.spacing = 1;
-  settings.walls = [wall = wall_of(plane(20))](double) { return FieldWalls{wall}; };
+  settings.field = kField;
+  settings.field.wall_share = kShare;
   Tracker tracker(settings, particles(0));
   for (int step = 1; step <= 10; ++step) {
     tracker.advance(particles(0.3 * step));
@@ -207,11 +211,64 @@ TEST(FieldWalls, TrackerFollowsAFilmThatSlidesOverAWall) {
   EXPECT_LT(errors[errors.size() / 2], 0.2);
 }
 
+KeyframeMotion rising() {
+  KeyframeMotion motion;
+  motion.keyframes = {{0, Vec3::Zero(), Vec3::Zero()}, {2, {0, 4, 0}, {0, 90, 0}}};
+  motion.interpolation = KeyframeMotion::Interpolation::smooth;
+  return motion;
+}
+
+TEST(FieldWalls, AreWhereTheirMotionPutsThemAtAnyTime) {
+  const Wall wall(plane(3), 1, rising());
+  for (const double time : {0.0, 0.3, 1.0, 1.9, 5.0}) {
+    const Pose pose = rising().pose(time);
+    const auto placed = wall.in_field(time, kField);
+    ASSERT_EQ(placed->positions().size(), wall.points().size());
+    for (std::size_t i = 0; i < wall.points().size(); ++i)
+      EXPECT_EQ(placed->positions()[i], pose.place(wall.points()[i]));
+    EXPECT_EQ(wall.in_field(time, kField), placed) << "not worked out twice";
+  }
+}
+
+TEST(FieldWalls, KeepOneAnswerForEachShareAndRadius) {
+  const Wall wall(plane(3), 1);
+  const auto placed = wall.in_field(0, kField);
+  EXPECT_EQ(wall.in_field(7, kField), placed) << "it rests";
+  FieldSettings other = kField;
+  other.wall_share = 0.2;
+  EXPECT_NEAR(wall.in_field(0, other)->share() / placed->share(), 0.2 / kShare, 1e-12);
+  EXPECT_EQ(wall.in_field(0, kField)->share(), placed->share());
+}
+
+// Between two states the walls are where their keyframes put them then, not at either state's place.
+TEST(FieldWalls, PathsBetweenTwoStatesSeeThemInBetween) {
+  Particles from, to;
+  from.ids = to.ids = {0};
+  from.positions = to.positions = {{0, 0.5, 0}};
+  from.velocities = to.velocities = {Vec3::Zero()};
+  from.walls = to.walls = {std::make_shared<const Wall>(plane(4), 1.0, rising())};
+  to.time = 1;
+  const ParticlePaths paths(from, to);
+  for (const double time : {0.0, 0.5, 1.0}) {
+    Particles between = from;
+    between.time = time;
+    const MetaballField field = paths.field(time, kField), expected = field_of(between, kField);
+    ASSERT_EQ(field.walls().size(), 1U);
+    for (const double y : {0.1, 0.7, 1.6}) EXPECT_EQ(field.value({0.2, y, 0.1}), expected.value({0.2, y, 0.1}));
+  }
+  FieldSettings without = kField;
+  without.wall_share = 0;
+  EXPECT_TRUE(paths.field(0.5, without).walls().empty());
+  EXPECT_TRUE(field_of(from, without).walls().empty());
+}
+
 TEST(FieldWalls, BadOnesAreRefused) {
   const double nan = std::nan("");
   EXPECT_THROW(FieldWall({{nan, 0, 0}}, 1, 1), std::invalid_argument);
   EXPECT_THROW(FieldWall({{0, 0, 0}}, -1, 1), std::invalid_argument);
   EXPECT_THROW(FieldWall({{0, 0, 0}}, 1, 0), std::invalid_argument);
+  EXPECT_THROW(Wall({{0, nan, 0}}, 1), std::invalid_argument);
+  EXPECT_THROW(Wall({{0, 0, 0}}, 0), std::invalid_argument);
 }
 
 }  // namespace

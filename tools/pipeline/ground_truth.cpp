@@ -29,9 +29,7 @@ void GroundTruth::start_markers(const tracking::SurfaceMesh& mesh) {
   tracking::settle_markers(field(), most_depth_, markers_);
 }
 
-tracking::MetaballField GroundTruth::field() const {
-  return tracking::field_of(particles_, settings_.field, settings_.walls_at(particles_.time));
-}
+tracking::MetaballField GroundTruth::field() const { return tracking::field_of(particles_, settings_.field); }
 
 tracking::FlowAt GroundTruth::exact_flow() const {
   return [this](double time) -> tracking::Flow {

@@ -61,8 +61,7 @@ void describe_surface(const tracking::SurfaceMesh& mesh, const tracking::Particl
                       const tracking::TrackerSettings& settings, FrameRow& row) {
   describe_triangles(mesh, settings.edge_length, row);
   if (particles.positions.empty()) return describe_shape(mesh, {}, settings.edge_length, row);
-  const tracking::MetaballField field =
-      tracking::field_of(particles, settings.field, settings.walls_at(particles.time));
+  const tracking::MetaballField field = tracking::field_of(particles, settings.field);
   describe_shape(mesh, tracking::extract_raw_surface(field, settings.edge_length), settings.edge_length, row);
   if (mesh.positions.empty() || particles.rest_positions.empty()) return;
   row.texture_drift = quantile(tracking::material_drift(mesh, field, particles), 0.5);

@@ -1,7 +1,5 @@
 #include "tools/pipeline/tracker_bridge.h"
 
-#include "tools/pipeline/field_walls.h"
-
 namespace flowskin::tools {
 
 tracking::Particles to_particles(const scenes::ParticleState& state) {
@@ -13,6 +11,7 @@ tracking::Particles to_particles(const scenes::ParticleState& state) {
   if (state.has_material) particles.rest_positions = state.rest_positions;
   particles.weights = state.weights;
   particles.has_lasting_ids = state.has_lasting_ids;
+  particles.walls = state.walls;
   return particles;
 }
 
@@ -33,6 +32,7 @@ tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
   settings.spacing = spacing;
   settings.field = tracking::default_field_settings(spacing, spec.radius);
   if (spec.threshold > 0) settings.field.threshold = spec.threshold;
+  settings.field.wall_share = spec.wall_share;
   settings.velocity = spec.velocity == kAutomaticVelocity ? "hybrid" : spec.velocity;
   settings.integrator = spec.integrator == "euler" ? tracking::Integrator::euler
                         : spec.integrator == "rk4" ? tracking::Integrator::rk4
@@ -51,7 +51,6 @@ tracking::TrackerSettings tracker_settings(const scenes::Scene& scene) {
   settings.max_slip = max_slip_of(scene) * spacing;
   settings.topology = spec.topology;
   settings.guard = spec.guard;
-  settings.walls = field_walls(scene, settings.field);
   return settings;
 }
 

@@ -104,13 +104,14 @@ void check_particles(const Particles& particles) {
   }
 }
 
-MetaballField field_of(const Particles& particles, const FieldSettings& settings, const FieldWalls& walls) {
-  if (!particles.weights.empty()) return MetaballField(parts_of(particles), settings, walls);
-  return MetaballField({{particles.positions, particles.velocities}}, settings, walls);
+MetaballField field_of(const Particles& particles, const FieldSettings& settings) {
+  FieldWalls walls = field_walls(particles.walls, particles.time, settings);
+  if (!particles.weights.empty()) return MetaballField(parts_of(particles), settings, std::move(walls));
+  return MetaballField({{particles.positions, particles.velocities}}, settings, std::move(walls));
 }
 
 ParticlePaths::ParticlePaths(const Particles& from, const Particles& to, double longest_jump)
-    : begin_(from.time), end_(to.time) {
+    : begin_(from.time), end_(to.time), walls_(to.walls) {
   const auto unknown = [](const Particles& state) {
     return !state.has_lasting_ids || !state.weights.empty() || (state.velocities.empty() && !state.ids.empty());
   };
@@ -182,11 +183,12 @@ void ParticlePaths::at(double time, std::vector<Vec3>& positions, std::vector<Ve
   }
 }
 
-MetaballField ParticlePaths::field(double time, const FieldSettings& settings, const FieldWalls& walls) const {
+MetaballField ParticlePaths::field(double time, const FieldSettings& settings) const {
+  FieldWalls walls = field_walls(walls_, time, settings);
   if (!blended_) {
     std::vector<FieldPart> all(1);
     at(time, all.front().positions, all.front().velocities);
-    return MetaballField(std::move(all), settings, walls);
+    return MetaballField(std::move(all), settings, std::move(walls));
   }
   const double duration = end_ - begin_;
   const double s = time == end_ ? 1 : (time - begin_) / duration;
@@ -202,7 +204,7 @@ MetaballField ParticlePaths::field(double time, const FieldSettings& settings, c
   };
   add(late_, time == end_ ? 0 : time - end_, s, rate);
   add(early_, time - begin_, 1 - s, -rate);
-  return MetaballField(std::move(parts), settings, walls);
+  return MetaballField(std::move(parts), settings, std::move(walls));
 }
 
 double ParticlePaths::longest_path() const {

@@ -12,8 +12,8 @@ namespace flowskin::tracking {
 /// @throws std::invalid_argument where arrays differ in size, ids do not ascend, or a number is not finite.
 void check_particles(const Particles& particles);
 
-/// The field of particles at one time; with time derivatives as far as they have velocities.
-MetaballField field_of(const Particles& particles, const FieldSettings& settings, const FieldWalls& walls = {});
+/// The field of particles and walls at one time; with time derivatives as far as the particles have velocities.
+MetaballField field_of(const Particles& particles, const FieldSettings& settings);
 
 /// Particles of two states matched by id. A particle in both moves on the cubic Hermite curve through its positions
 /// with its velocities; one only in the later state comes in on a straight line, one only in the earlier goes on on
@@ -41,9 +41,9 @@ class ParticlePaths {
   /// particles of the later state are left, exactly as they are given there.
   void at(double time, std::vector<Vec3>& positions, std::vector<Vec3>& velocities) const;
 
-  /// The field of these particles. Blended: those of the later state come first.
-  /// @param walls those at that time
-  MetaballField field(double time, const FieldSettings& settings, const FieldWalls& walls = {}) const;
+  /// The field of these particles, and of the later state's walls where they are at that time. Blended: the particles
+  /// of the later state come first.
+  MetaballField field(double time, const FieldSettings& settings) const;
 
   /// An upper bound of how far any particle moves from begin to end along its path (m). Blended: an estimate.
   double longest_path() const;
@@ -63,6 +63,7 @@ class ParticlePaths {
   double mismatch_ = 0;
   std::vector<Path> paths_;              // in order of ascending id
   std::vector<FieldPart> early_, late_;  // blended: of both states
+  Walls walls_;                          // of the later state
 };
 
 }  // namespace flowskin::tracking

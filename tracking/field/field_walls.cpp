@@ -1,9 +1,11 @@
 #include "tracking/field/field_walls.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "tracking/field/metaball_field.h"
 #include "tracking/field/particle_blocks.h"
@@ -40,6 +42,44 @@ void FieldWall::near(const Vec3& low, const Vec3& high, double reach, std::vecto
       }
     }
   }
+}
+
+/// Where a wall was last asked for, and what it was there.
+struct Wall::Answer {
+  double time;  // s; of a wall that rests without meaning
+  double share, radius;
+  std::shared_ptr<const FieldWall> wall;
+};
+
+Wall::Wall(std::vector<Vec3> points, double area, KeyframeMotion motion)
+    : points_(std::move(points)), area_(area), motion_(std::move(motion)) {
+  check(points_, 0, 1);
+  if (!(std::isfinite(area_) && area_ > 0))
+    throw std::invalid_argument("Wall: the area that a point stands for is " + std::to_string(area_) +
+                                "; expected a positive number (m^2)");
+}
+Wall::~Wall() = default;
+
+std::shared_ptr<const FieldWall> Wall::in_field(double time, const FieldSettings& settings) const {
+  const double share = share_of_wall_point(settings, area_, settings.wall_share);
+  const std::lock_guard lock(mutex_);
+  if (last_ && last_->share == share && last_->radius == settings.radius && (!motion_.moves() || last_->time == time))
+    return last_->wall;
+  std::vector<Vec3> places = points_;
+  if (motion_.moves()) {
+    const Pose pose = motion_.pose(time);
+    for (Vec3& place : places) place = pose.place(place);
+  }
+  last_ = std::make_unique<const Answer>(Answer{
+      time, share, settings.radius, std::make_shared<const FieldWall>(std::move(places), share, settings.radius)});
+  return last_->wall;
+}
+
+FieldWalls field_walls(const Walls& walls, double time, const FieldSettings& settings) {
+  FieldWalls placed;
+  if (!(settings.wall_share > 0)) return placed;
+  for (const auto& wall : walls) placed.push_back(wall->in_field(time, settings));
+  return placed;
 }
 
 double share_of_wall_point(const FieldSettings& settings, double area, double share_of_threshold) {

@@ -1,10 +1,11 @@
-// Walls as a metaball field meets them: points on them that make it stronger beside them.
+// Walls: points on them that make a metaball field stronger beside them.
 #pragma once
 
-#include <functional>
 #include <memory>
+#include <mutex>
 #include <vector>
 
+#include "common/keyframe_motion.h"
 #include "tracking/particles.h"
 
 namespace flowskin::tracking {
@@ -41,8 +42,35 @@ class FieldWall {
 
 /// All walls at one time.
 using FieldWalls = std::vector<std::shared_ptr<const FieldWall>>;
-/// The walls at a time (s). Empty: there are none.
-using WallsAt = std::function<FieldWalls(double)>;
+
+/// A wall as a source hands it out with its particles: points in the wall's own frame, and the motion that tells where
+/// they are at any time, so also between two states. Shared by all states of a source; safe to use from many threads.
+class Wall {
+ public:
+  /// @param points about evenly spread over the wall where its mesh is at rest (m)
+  /// @param area that a point stands for (m^2)
+  /// @throws std::invalid_argument where a point is not finite, or the area not positive
+  Wall(std::vector<Vec3> points, double area, KeyframeMotion motion = {});
+  ~Wall();
+
+  const std::vector<Vec3>& points() const { return points_; }
+  double area() const { return area_; }
+  const KeyframeMotion& motion() const { return motion_; }
+  /// As the field of these settings meets it at a time (s). The last answer is kept: of a wall that rests, and of one
+  /// that is asked for again at the same time, nothing is worked out twice.
+  std::shared_ptr<const FieldWall> in_field(double time, const FieldSettings& settings) const;
+
+ private:
+  std::vector<Vec3> points_;
+  double area_;
+  KeyframeMotion motion_;
+  struct Answer;
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<const Answer> last_;
+};
+
+/// What a metaball field meets of the walls at a time (s); nothing where FieldSettings::wall_share is 0.
+FieldWalls field_walls(const Walls& walls, double time, const FieldSettings& settings);
 
 /// The share that makes the field of points on a bare plane `share_of_threshold` times the threshold there. Below 1/2
 /// neither a wall nor the gap between two makes a surface of its own.

@@ -16,6 +16,8 @@ struct FieldSettings {
   double radius = 0;     ///< Effective radius sigma of a particle (m).
   double threshold = 0;  ///< T; the surface is where the sum of the kernels equals T.
   double weight = 1;     ///< w_i, the same for all particles.
+  /// Field of a bare wall, in thresholds: below 1/2 it has no surface of its own. 0: the field knows no walls.
+  double wall_share = 0.45;
 };
 
 /// Radius `radius_in_spacings` times the spacing, and the threshold that puts the surface of a half space filled with a

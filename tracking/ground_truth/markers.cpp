@@ -16,7 +16,9 @@ Flow particle_flow(MetaballField field) {
 }
 
 FlowAt particle_flow(const ParticlePaths& paths, const FieldSettings& settings) {
-  return [&paths, settings](double time) { return particle_flow(paths.field(time, settings)); };
+  FieldSettings particles_alone = settings;
+  particles_alone.wall_share = 0;
+  return [&paths, particles_alone](double time) { return particle_flow(paths.field(time, particles_alone)); };
 }
 
 int Markers::on_surface() const { return static_cast<int>(std::count(left.begin(), left.end(), std::uint8_t{0})); }
