@@ -23,7 +23,6 @@ namespace {
 
 constexpr double kDefaultEdgeInSpacings = 0.75;
 constexpr int kMostSubsteps = 1000;
-constexpr double kLongestJump = 4;  // of a particle between two states, in effective radii
 constexpr int kRemeshingPasses = 3;
 constexpr double kTorn = 3;  // times its length: the ends of an edge that were farther apart at rest are of two bodies
 constexpr int kFewIn = 50;   // one operation in so many vertices is few: another pass is not worth it
@@ -93,8 +92,8 @@ class TrackerImpl {
       }
     }
     finish();
-    // Where paths jump or are blended, so are the rates of the field at their end. From here on it is a function of
-    // the particles alone: a saved state need not hold it.
+    // Where states are blended, so are the rates of the field at the end. From here on it is a function of the
+    // particles alone: a saved state need not hold it.
     if (!field_of_particles_) rebuild_field();
   }
 
@@ -192,10 +191,10 @@ class TrackerImpl {
 
   // Carries the vertices to the time of the new particles, in substeps.
   void advect(const Particles& particles) {
-    const ParticlePaths paths(particles_, particles, kLongestJump * settings_.field.radius);
+    const ParticlePaths paths(particles_, particles, settings_.spacing);
     report_.blended = paths.blended();
     report_.mismatch = paths.mismatch();
-    field_of_particles_ = !paths.blended() && !paths.jumps();
+    field_of_particles_ = !paths.blended();
     const double limit = settings_.max_motion * settings_.field.radius;
     report_.substeps =
         static_cast<int>(std::clamp(std::ceil(paths.longest_path() / limit), 1.0, double{kMostSubsteps}));
@@ -205,7 +204,7 @@ class TrackerImpl {
     std::vector<Vec3> first;
     if (paths.blended()) {
       if (duration != 0) field_.emplace(field_at(paths.begin_time()));  // the same, but for its rates
-    } else if (velocities_known_ && particles_.ids == particles.ids) {
+    } else if (velocities_known_ && particles_.ids == particles.ids && !paths.jumps()) {
       first = mesh_.velocities;
     }
 
@@ -332,7 +331,7 @@ class TrackerImpl {
   std::optional<MetaballField> field_;  // of the particles; none where there are none
   MeshAdjacency topology_;
   std::optional<Neighborhoods> near_;  // during a step: of places near the vertices before fairing
-  bool field_of_particles_ = true;     // false during a step: the field is that of paths that jump or are blended
+  bool field_of_particles_ = true;     // false during a step: the field is a blend of two states
 };
 
 Tracker::Tracker(TrackerSettings settings, const Particles& particles)

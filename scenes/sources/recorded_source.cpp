@@ -10,16 +10,13 @@
 #include "scenes/sources/forward_time.h"
 #include "scenes/sources/particle_spacing.h"
 #include "scenes/sources/wall_points.h"
+#include "tracking/advection/jumps.h"
 
 namespace flowskin::scenes {
 namespace {
 
 /// A time this near to a file's (in frame intervals) is the file's: rounding of frame times must not interpolate.
 constexpr double same_time = 1e-9;
-
-/// A particle that goes farther than this (in spacings), and this many times as far as nine in ten do, has not moved:
-/// it was taken out here and put in there (at a periodic boundary, say).
-constexpr double jump_in_spacings = 10, jump_in_usual_paths = 8;
 
 /// Calls visit(i, j) for all ids of two states in ascending order; -1 where the id is in the other one only.
 template <class Visit>
@@ -43,11 +40,38 @@ void append(ParticleState& state, const ParticleState& from, std::size_t i, cons
   state.densities.push_back(density);
 }
 
-/// The state at a share s of the interval from a to b.
-ParticleState between(const ParticleState& a, const ParticleState& b, double s, double interval) {
+/// Which of the particles that are in both states, in ascending order of their ids, have jumped; empty: none.
+std::vector<char> jumps_between(const ParticleState& a, const ParticleState& b, double interval, bool with_velocities,
+                                double spacing) {
+  std::vector<tracking::Sighting> both;
+  match_ids(a, b, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+    if (i < 0 || j < 0) return;
+    both.push_back({b.positions[j] - a.positions[i]});
+    if (!with_velocities) return;
+    both.back().before = a.velocities[i];
+    both.back().after = b.velocities[j];
+  });
+  return tracking::jumped(both, interval, with_velocities, spacing);
+}
+
+/// Calls visit(i, j) as match_ids does, where a particle that has jumped is one of each state.
+template <class Visit>
+void match_particles(const ParticleState& a, const ParticleState& b, const std::vector<char>& jumps, Visit visit) {
+  std::size_t k = 0;
+  match_ids(a, b, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+    const bool same = i < 0 || j < 0 || jumps.empty() || !jumps[k];
+    if (i >= 0 && j >= 0) ++k;
+    if (same) return visit(i, j);
+    visit(i, -1);
+    visit(-1, j);
+  });
+}
+
+/// The state at a share s of the interval from a to b. Ids stay in ascending order.
+ParticleState between(const ParticleState& a, const ParticleState& b, double s, double interval, double spacing) {
   ParticleState state;
   const double s2 = s * s, s3 = s2 * s;
-  match_ids(a, b, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+  match_particles(a, b, jumps_between(a, b, interval, true, spacing), [&](std::ptrdiff_t i, std::ptrdiff_t j) {
     if (i >= 0 && j >= 0) {
       const Vec3 &x0 = a.positions[i], &x1 = b.positions[j];
       const Vec3 m0 = interval * a.velocities[i], m1 = interval * b.velocities[j];
@@ -81,27 +105,22 @@ ParticleState blended(const ParticleState& a, const ParticleState& b, double s, 
 }
 
 /// A particle's place in another file.
-struct Sighting {
+struct PlaceInFile {
   double time;  // from the file in question (s)
   Vec3 position;
 };
 
 /// Adds where the particles are in another file, a time `time` away, except those that jumped.
-void add_sightings(const ParticleState& here, const ParticleState& other, double time, double spacing,
-                   std::vector<std::vector<Sighting>>& sightings) {
-  std::vector<double> paths;
-  match_ids(here, other, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
-    if (i >= 0 && j >= 0) paths.push_back((other.positions[j] - here.positions[i]).norm());
-  });
-  const double longest = std::max(jump_in_spacings * spacing, jump_in_usual_paths * quantile(paths, 0.9));
-  match_ids(here, other, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
-    if (i < 0 || j < 0 || (other.positions[j] - here.positions[i]).norm() > longest) return;
-    sightings[i].push_back({time, other.positions[j]});
-  });
+void add_places(const ParticleState& here, const ParticleState& other, double time, double spacing,
+                std::vector<std::vector<PlaceInFile>>& places) {
+  match_particles(here, other, jumps_between(here, other, time, false, spacing),
+                  [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+                    if (i >= 0 && j >= 0) places[i].push_back({time, other.positions[j]});
+                  });
 }
 
 /// Derivative at time 0 of the polynomial through a place at time 0 and up to two others.
-Vec3 velocity_through(const Vec3& here, const std::vector<Sighting>& others) {
+Vec3 velocity_through(const Vec3& here, const std::vector<PlaceInFile>& others) {
   if (others.empty()) return Vec3::Zero();
   const double a = others[0].time;
   const Vec3 slope_a = (others[0].position - here) / a;
@@ -142,7 +161,7 @@ void RecordedSource::advance_to(double time) {
   } else {
     const double interval = times[k + 1] - times[k];
     const ParticleState next = complete_state(k + 1);
-    state_ = has_lasting_ids() ? between(here, next, elapsed / interval, interval)
+    state_ = has_lasting_ids() ? between(here, next, elapsed / interval, interval, spacing_)
                                : blended(here, next, elapsed / interval, interval);
   }
   state_.has_lasting_ids = has_lasting_ids();
@@ -161,6 +180,7 @@ const ParticleState& RecordedSource::file_state(std::size_t k) {
   for (std::size_t i = may_skip ? std::max(next, k) : next; i <= k; ++i) {
     read_into_cache(i);
     while (cache_.size() > 5) cache_.erase(cache_.begin());
+    std::erase_if(renewals_, [&](const Renewal& renewal) { return renewal.file < cache_.begin()->first; });
   }
   return cache_.at(k);
 }
@@ -168,7 +188,7 @@ const ParticleState& RecordedSource::file_state(std::size_t k) {
 void RecordedSource::read_into_cache(std::size_t k) {
   ParticleState state = read_sequence_file(sequence_, k).state;
   if (sequence_.ids != ParticleSequence::Ids::of_files) std::iota(state.ids.begin(), state.ids.end(), 0);
-  settle_rest_positions(state);
+  settle_rest_positions(k, state);
   cache_[k] = std::move(state);
 }
 
@@ -216,26 +236,47 @@ void RecordedSource::save(StateWriter& writer) const {
   std::vector<std::uint64_t> cached;
   for (const auto& entry : cache_) cached.push_back(entry.first);
   writer.section("recorded particles");
-  writer(SequenceMark(sequence_), state_, rest_positions_, cached);
+  writer(SequenceMark(sequence_), state_, rest_positions_, renewals_, cached);
 }
 
 void RecordedSource::restore(StateReader& reader) {
   SequenceMark mark;
   std::vector<std::uint64_t> cached;
   reader.section("recorded particles");
-  reader(mark, state_, rest_positions_, cached);
+  reader(mark, state_, rest_positions_, renewals_, cached);
   check_same_files(mark, SequenceMark(sequence_));
   cache_.clear();
+  take_back_renewals(cached);
   for (const std::uint64_t k : cached) {
     if (k >= sequence_.files.size()) throw StateError("the saved state names a file that is not there");
     read_into_cache(k);
   }
 }
 
-void RecordedSource::settle_rest_positions(ParticleState& state) {
+void RecordedSource::settle_rest_positions(std::size_t k, ParticleState& state) {
   if (sequence_.first.has_rest_positions || !has_lasting_ids()) return;
+  const auto before = k > 0 ? cache_.find(k - 1) : cache_.end();
+  if (before != cache_.end()) {
+    const ParticleState& last = before->second;
+    const double interval = sequence_.times[k] - sequence_.times[k - 1];
+    const std::vector<char> jumps = jumps_between(last, state, interval, sequence_.first.has_velocities, spacing_);
+    std::size_t both = 0;
+    match_ids(last, state, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+      if (jumps.empty() || i < 0 || j < 0 || !jumps[both++]) return;
+      Vec3& rest_position = rest_positions_[state.ids[j]];
+      renewals_.push_back({k, state.ids[j], rest_position});
+      rest_position = state.positions[j];
+    });
+  }
   for (std::size_t i = 0; i < state.ids.size(); ++i) {
     state.rest_positions[i] = rest_positions_.emplace(state.ids[i], state.positions[i]).first->second;
+  }
+}
+
+void RecordedSource::take_back_renewals(const std::vector<std::uint64_t>& cached) {
+  while (!cached.empty() && !renewals_.empty() && renewals_.back().file > cached.front()) {
+    rest_positions_[renewals_.back().id] = renewals_.back().before;
+    renewals_.pop_back();
   }
 }
 
@@ -246,12 +287,11 @@ ParticleState RecordedSource::complete_state(std::size_t k) {
   const std::size_t low = std::min(k > 0 ? k - 1 : 0, count > 3 ? count - 3 : 0), high = std::min(low + 2, count - 1);
   for (std::size_t i = low; i <= high; ++i) file_state(i);
   ParticleState here = file_state(k);
-  std::vector<std::vector<Sighting>> sightings(here.ids.size());
+  std::vector<std::vector<PlaceInFile>> places(here.ids.size());
   for (std::size_t i = low; i <= high; ++i) {
-    if (i != k) add_sightings(here, file_state(i), sequence_.times[i] - sequence_.times[k], spacing_, sightings);
+    if (i != k) add_places(here, file_state(i), sequence_.times[i] - sequence_.times[k], spacing_, places);
   }
-  for (std::size_t i = 0; i < here.ids.size(); ++i)
-    here.velocities[i] = velocity_through(here.positions[i], sightings[i]);
+  for (std::size_t i = 0; i < here.ids.size(); ++i) here.velocities[i] = velocity_through(here.positions[i], places[i]);
   return here;
 }
 

@@ -11,8 +11,9 @@ namespace flowskin::scenes {
 
 /// Between files every particle, found again by its id, follows the cubic Hermite curve through its places and
 /// velocities; one that is in only one of the two files goes straight on for the half of the interval next to that
-/// file. What the files do not tell is made up for: velocities from differences over three files, rest positions from
-/// the first file that holds the particle. Where nobody knows who is who, the particles of both files are there, each
+/// file. A particle that jumps (tracking::JumpRule) is one that goes and one that comes. What the files do not tell is
+/// made up for: velocities from differences over three files, rest positions from the first file that holds the
+/// particle, or the first after a jump. Where nobody knows who is who, the particles of both files are there, each
 /// moved by its velocity as far as it has one, with weights that go from one file to the other.
 class RecordedSource : public ParticleSource {
  public:
@@ -36,13 +37,28 @@ class RecordedSource : public ParticleSource {
   ParticleState complete_state(std::size_t k);
   /// Reads file k into the cache.
   void read_into_cache(std::size_t k);
-  void settle_rest_positions(ParticleState& state);
+  /// Gives the particles of file k rest positions: where each was first, or came back after a jump.
+  void settle_rest_positions(std::size_t k, ParticleState& state);
+  /// Makes the rest positions what they were when the first of the cached files had been read.
+  void take_back_renewals(const std::vector<std::uint64_t>& cached);
+
+  /// A rest position that was replaced, since its particle jumped.
+  struct Renewal {
+    std::uint64_t file = 0;  ///< The first one after the jump.
+    std::uint64_t id = 0;
+    Vec3 before = Vec3::Zero();
+    template <class Archive>
+    void visit(Archive& archive) {
+      archive(file, id, before);
+    }
+  };
 
   ParticleSequence sequence_;
   double spacing_;
   tracking::Walls walls_;
   std::map<std::size_t, ParticleState> cache_;
   std::map<std::uint64_t, Vec3> rest_positions_;  ///< By id; where the files have none.
+  std::vector<Renewal> renewals_;                 ///< By the cached files, in the order in which they were made.
   ParticleState state_;
 };
 

@@ -312,6 +312,63 @@ TEST_F(RecordedSourceTest, ParticlesThatJumpHaveNoVelocityFromTheJump) {
   }
 }
 
+// A stream along x, half a spacing a file; what leaves at its end comes in again under the same id.
+std::vector<TestParticle> stream(double file) {
+  constexpr int length = 20;
+  std::vector<TestParticle> particles;
+  for (int i = 0; i < length; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      const double place = std::fmod(i + 0.5 * file, length);
+      particles.push_back({static_cast<std::uint64_t>(2 * i + j), Vec3(0.1 * place, 0.1 * j, 0), Vec3(0.1, 0, 0)});
+    }
+  }
+  return particles;
+}
+
+TEST_F(RecordedSourceTest, ParticlesThatAreUsedAgainDoNotFlyThroughTheFluid) {
+  for (const int columns : {with_ids | with_velocities, int{with_ids}}) {
+    for (int k = 0; k < 12; ++k) write(fmt::format("stream_{:02}.ply", k), stream(k), columns);
+    const auto source = open("stream_*.ply", 0.5);
+    for (double time = 0; time <= 5.5; time += 0.125) {
+      source->advance_to(time);
+      const ParticleState& state = source->state();
+      EXPECT_EQ(state.ids.size(), 40U) << time;
+      for (std::size_t i = 0; i < state.ids.size(); ++i) {
+        EXPECT_NEAR(state.velocities[i].x(), 0.1, 1e-12) << columns << " " << time;
+        EXPECT_GT(state.positions[i].x(), -0.1 - 1e-12);
+        EXPECT_LT(state.positions[i].x(), 2.1 + 1e-12);
+      }
+    }
+  }
+}
+
+// Its material is that of the inlet from then on, and a run that is resumed at any file says so, too.
+TEST_F(RecordedSourceTest, ParticlesThatAreUsedAgainAreNewMaterial) {
+  for (int k = 0; k < 12; ++k) write(fmt::format("stream_{:02}.ply", k), stream(k), with_ids);
+  for (const double stop : {0.5, 1.25, 2.0, 3.5}) {
+    const auto source = open("stream_*.ply", 0.5);
+    source->advance_to(stop);
+    std::string saved;
+    StateWriter writer([&](std::string_view bytes) { saved += bytes; });
+    source->save(writer);
+    writer.flush();
+    const auto resumed = open("stream_*.ply", 0.5);
+    StateReader reader(saved);
+    resumed->restore(reader);
+    for (const double time : {4.0, 4.25, 5.5}) {
+      source->advance_to(time);
+      resumed->advance_to(time);
+      EXPECT_EQ(source->state().rest_positions, resumed->state().rest_positions) << stop << " " << time;
+      EXPECT_EQ(source->state().positions, resumed->state().positions) << stop << " " << time;
+    }
+    const ParticleState& state = source->state();  // eleven half spacings: five layers have come in again
+    for (std::size_t i = 0; i < state.ids.size(); ++i) {
+      const bool again = state.ids[i] >= 30;
+      EXPECT_EQ(state.rest_positions[i].x() < 0.1, again || state.ids[i] < 2) << state.ids[i];
+    }
+  }
+}
+
 TEST_F(RecordedSourceTest, SpacingIsEstimatedFromDistances) {
   std::vector<Vec3> lattice;
   for (int i = 0; i < 1000; ++i) lattice.emplace_back(0.02 * Vec3(i % 10, i / 10 % 10, i / 100));

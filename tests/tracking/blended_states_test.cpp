@@ -290,20 +290,28 @@ TEST(BlendedStates, BadSequencesAreSurvived) {
   }
 }
 
-TEST(BlendedStates, ParticlesThatJumpHoldStill) {
+// One in a row of particles, all of which move upwards, is taken out and put in far away: it goes on for a while where
+// it was, comes in where it will be, and has its velocity at both places.
+TEST(ParticlePaths, AParticleThatJumpsGoesHereAndComesThere) {
   std::vector<Vec3> row;
   for (int i = 0; i < 30; ++i) row.emplace_back(i, 0, 0);
   Particles from = particles_at(row), to = particles_at(row);
   to.time = 1;
-  for (Vec3& x : to.positions) x += Vec3(0, 0.1, 0);
+  const Vec3 velocity(0, 0.1, 0);
+  for (Vec3& x : to.positions) x += velocity;
+  for (std::size_t i = 0; i < row.size(); ++i) from.velocities[i] = to.velocities[i] = velocity;
   to.positions[4] += Vec3(0, 500, 0);
-  const ParticlePaths paths(from, to, 10);
-  EXPECT_LT(paths.longest_path(), 1);
+  const ParticlePaths paths(from, to, 1);
+  EXPECT_LT(paths.longest_path(), 0.2);
   std::vector<Vec3> positions, speeds;
-  paths.at(0.5, positions, speeds);
-  EXPECT_EQ(positions.size(), 31U);  // it is at both places
+  for (const double time : {0.0, 0.5}) {
+    paths.at(time, positions, speeds);
+    EXPECT_EQ(positions.size(), 31U);  // it is at both places
+    for (const Vec3& speed : speeds) EXPECT_LT((speed - velocity).norm(), 1e-12);
+  }
   paths.at(1, positions, speeds);
   EXPECT_EQ(positions, to.positions);
+  EXPECT_EQ(speeds, to.velocities);
   EXPECT_GT(ParticlePaths(from, to).longest_path(), 500);
 }
 

@@ -48,7 +48,7 @@ int GroundTruth::exact_steps(double duration) const {
 
 void GroundTruth::advance(const tracking::Particles& particles) {
   if (!markers_.ids.empty() && particles.time != particles_.time) {
-    const tracking::ParticlePaths paths(particles_, particles);
+    const tracking::ParticlePaths paths(particles_, particles, settings_.spacing);
     if (motion_) {
       tracking::advect_markers(exact_flow(), particles.time, exact_steps(particles.time - particles_.time), markers_);
     } else {

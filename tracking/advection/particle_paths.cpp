@@ -7,26 +7,26 @@
 #include <utility>
 
 #include "common/quantile.h"
+#include "tracking/advection/jumps.h"
 #include "tracking/mesh/point_tree.h"
 
 namespace flowskin::tracking {
 namespace {
 
-// A particle that goes so many times as far as nine in ten do may have jumped.
-constexpr double jump_in_usual_paths = 8;
 constexpr std::size_t most_samples = 20000;
 constexpr double most_share = 0.998;
 
-// How far nine in ten particles of both states move at most.
-double usual_path(const Particles& from, const Particles& to) {
-  std::vector<double> paths;
-  for (std::size_t i = 0, j = 0; i < from.ids.size() && j < to.ids.size();) {
-    if (from.ids[i] == to.ids[j]) paths.push_back((to.positions[j] - from.positions[i]).norm());
-    const bool next_i = from.ids[i] <= to.ids[j], next_j = to.ids[j] <= from.ids[i];
-    i += next_i;
-    j += next_j;
+/// Calls visit(i, j) for all ids of two states in ascending order; -1 where the id is in the other one only.
+template <class Visit>
+void match_ids(const Particles& from, const Particles& to, const Visit& visit) {
+  std::size_t i = 0, j = 0;
+  while (i < from.ids.size() || j < to.ids.size()) {
+    const bool in_from = i < from.ids.size() && (j == to.ids.size() || from.ids[i] <= to.ids[j]);
+    const bool in_to = j < to.ids.size() && (i == from.ids.size() || to.ids[j] <= from.ids[i]);
+    visit(in_from ? static_cast<std::ptrdiff_t>(i) : -1, in_to ? static_cast<std::ptrdiff_t>(j) : -1);
+    i += in_from ? 1 : 0;
+    j += in_to ? 1 : 0;
   }
-  return quantile(std::move(paths), 0.9);
 }
 
 // One part for each run of equal weights, in the order of the particles.
@@ -110,14 +110,14 @@ MetaballField field_of(const Particles& particles, const FieldSettings& settings
   return MetaballField({{particles.positions, particles.velocities}}, settings, std::move(walls));
 }
 
-ParticlePaths::ParticlePaths(const Particles& from, const Particles& to, double longest_jump)
+ParticlePaths::ParticlePaths(const Particles& from, const Particles& to, double spacing)
     : begin_(from.time), end_(to.time), walls_(to.walls) {
   const auto unknown = [](const Particles& state) {
     return !state.has_lasting_ids || !state.weights.empty() || (state.velocities.empty() && !state.ids.empty());
   };
   blended_ = unknown(from) || unknown(to);
   if (!blended_) {
-    match(from, to, longest_jump);
+    match(from, to, spacing);
     return;
   }
   early_ = parts_of(from);
@@ -125,31 +125,33 @@ ParticlePaths::ParticlePaths(const Particles& from, const Particles& to, double 
   mismatch_ = distance_of_most(moved(from, end_ - begin_), to.positions);
 }
 
-void ParticlePaths::match(const Particles& from, const Particles& to, double longest_jump) {
+void ParticlePaths::match(const Particles& from, const Particles& to, double spacing) {
   const double duration = end_ - begin_;
-  const std::size_t old_count = from.ids.size(), new_count = to.ids.size();
-  paths_.reserve(std::max(old_count, new_count));
-  const double jump = longest_jump < std::numeric_limits<double>::infinity()
-                          ? std::max(longest_jump, jump_in_usual_paths * usual_path(from, to))
-                          : longest_jump;
-  std::size_t i = 0, j = 0;
-  while (i < old_count || j < new_count) {
-    if (j == new_count || (i < old_count && from.ids[i] < to.ids[j])) {
-      const Vec3 &x = from.positions[i], &v = from.velocities[i++];
-      paths_.push_back({x, v, x + duration * v, v, true});
-    } else if (i == old_count || to.ids[j] < from.ids[i]) {
-      const Vec3 &x = to.positions[j], &v = to.velocities[j++];
-      paths_.push_back({x - duration * v, v, x, v, false});
-    } else if ((to.positions[j] - from.positions[i]).norm() > jump) {
-      jumps_ = true;
-      const Vec3 &x0 = from.positions[i++], &x1 = to.positions[j++], none = Vec3::Zero();
-      paths_.push_back({x0, none, x0, none, true});
-      paths_.push_back({x1, none, x1, none, false});
-    } else {
+  paths_.reserve(std::max(from.ids.size(), to.ids.size()));
+  const auto goes = [&](std::ptrdiff_t i) {
+    const Vec3 &x = from.positions[i], &v = from.velocities[i];
+    paths_.push_back({x, v, x + duration * v, v, true});
+  };
+  const auto comes = [&](std::ptrdiff_t j) {
+    const Vec3 &x = to.positions[j], &v = to.velocities[j];
+    paths_.push_back({x - duration * v, v, x, v, false});
+  };
+  std::vector<Sighting> both;
+  match_ids(from, to, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+    if (i >= 0 && j >= 0) both.push_back({to.positions[j] - from.positions[i], from.velocities[i], to.velocities[j]});
+  });
+  const std::vector<char> jump = jumped(both, duration, true, spacing);
+  jumps_ = !jump.empty();
+  std::size_t k = 0;
+  match_ids(from, to, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+    const bool in_both = i >= 0 && j >= 0;
+    if (in_both && !(jumps_ && jump[k++])) {
       paths_.push_back({from.positions[i], from.velocities[i], to.positions[j], to.velocities[j], false});
-      ++i, ++j;
+      return;
     }
-  }
+    if (i >= 0) goes(i);
+    if (j >= 0) comes(j);
+  });
 }
 
 void ParticlePaths::at(double time, std::vector<Vec3>& positions, std::vector<Vec3>& velocities) const {

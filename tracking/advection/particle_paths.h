@@ -17,7 +17,7 @@ MetaballField field_of(const Particles& particles, const FieldSettings& settings
 
 /// Particles of two states matched by id. A particle in both moves on the cubic Hermite curve through its positions
 /// with its velocities; one only in the later state comes in on a straight line, one only in the earlier goes on on
-/// one. A particle that jumps has not moved: it holds still at both places, at the later one it is a new one.
+/// one. A particle that jumps (JumpRule) counts as two: one that goes, and one that comes.
 ///
 /// Where ids do not last, or velocities are unknown, nobody knows paths. Then the field itself goes from one state's to
 /// the other's, f = (1 - s) f_0 + s f_1 with s from 0 to 1; particles with velocities move in it, those of the earlier
@@ -26,9 +26,8 @@ MetaballField field_of(const Particles& particles, const FieldSettings& settings
 class ParticlePaths {
  public:
   /// Both states are as check_particles wants them.
-  /// @param longest_jump a particle that goes farther than this (m), and much farther than most, jumps
-  ParticlePaths(const Particles& from, const Particles& to,
-                double longest_jump = std::numeric_limits<double>::infinity());
+  /// @param spacing of the particles (m), by which jumps are told; infinite: none jumps
+  ParticlePaths(const Particles& from, const Particles& to, double spacing = std::numeric_limits<double>::infinity());
 
   double begin_time() const { return begin_; }
   double end_time() const { return end_; }
@@ -56,7 +55,7 @@ class ParticlePaths {
     Vec3 x0, v0, x1, v1;  // at both ends
     bool ends;            // not in the later state
   };
-  void match(const Particles& from, const Particles& to, double longest_jump);
+  void match(const Particles& from, const Particles& to, double spacing);
 
   double begin_, end_;
   bool blended_ = false, jumps_ = false;
