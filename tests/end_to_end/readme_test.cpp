@@ -137,6 +137,28 @@ TEST(Readme, EveryLinkLeadsSomewhere) {
   EXPECT_GT(links, 80);
 }
 
+// Files and folders of the repository that a page names as `code`.
+std::vector<std::string> paths_named_in(const Page& page) {
+  static const std::regex path(R"(`((?:common|sph|tracking|scenes|tools|tests|docs)/[A-Za-z0-9_./]*)`)");
+  std::vector<std::string> paths;
+  for (const std::string& line : page.lines)
+    for (std::sregex_iterator found(line.begin(), line.end(), path), end; found != end; ++found)
+      paths.push_back((*found)[1]);
+  return paths;
+}
+
+TEST(Readme, FilesThatPagesNameExist) {
+  int paths = 0;
+  for (const fs::path& page : pages()) {
+    if (page.filename() == "CHANGELOG.md") continue;  // tells of the past
+    for (const std::string& path : paths_named_in(read_page(page))) {
+      ++paths;
+      EXPECT_TRUE(fs::exists(source_folder / path)) << page.filename() << " names " << path << ", which is not there";
+    }
+  }
+  EXPECT_GT(paths, 40);
+}
+
 TEST(Readme, TheIndexNamesEveryPage) {
   const std::vector<std::string> links = links_of(read_page(source_folder / "docs/README.md"));
   for (const fs::path& page : pages()) {
