@@ -88,6 +88,7 @@ TEST(ComparePlots, HaveALineAMethodWithAPointAFrame) {
   }
   EXPECT_NEAR(sheet.plots[0].series[0].y[2], 3, 1e-12);
   EXPECT_NE(sheet.plots[0].note.find("10 of 100 markers"), std::string::npos);
+  EXPECT_NE(sheet.title.find("max_slip 0"), std::string::npos);
 }
 
 using CompareFiles = IoTest;
@@ -107,12 +108,14 @@ TEST_F(CompareFiles, CsvHasAHeaderAndARowForEach) {
 }
 
 TEST_F(CompareFiles, MarkdownNamesTheBestFirst) {
-  write_compare_markdown(path("compare.md"), {"my scene", 0.1, "the truth", true, false}, some_rows());
+  write_compare_markdown(path("compare.md"), {"my scene", 0.1, "the truth", 0.02, true, false}, some_rows());
   const std::string text = read_text(path("compare.md"));
   EXPECT_LT(text.find("| 1 | good |"), text.find("| 2 | bad |"));
   EXPECT_NE(text.find("10 of 100 markers"), std::string::npos);
   EXPECT_NE(text.find("compare_sheet.png"), std::string::npos);
   EXPECT_EQ(text.find("compare.mp4"), std::string::npos);
+  EXPECT_NE(text.find("max_slip is 0"), std::string::npos);
+  EXPECT_NE(text.find("max_slip = 0.02 m"), std::string::npos);
 }
 
 TEST(CompareTiles, StandBelowTheirLabelsInAnEvenGrid) {
@@ -172,6 +175,34 @@ TEST(GroundTruth, ExactMotionAndParticlesAgreeOnARotation) {
     EXPECT_LT((exact.positions[i] - turn * exact.rest_positions[i]).norm(), 1e-9);
     EXPECT_LT((exact.positions[i] - by_particles.positions[i]).norm(), 1e-5);
   }
+}
+
+TEST_F(CompareFiles, NoMethodIsHelpedByMaxSlip) {
+  const auto table_with = [&](double max_slip) {
+    scenes::Scene scene = turning_ball();
+    scene.tracking.velocity = "normal";  // does not follow the rotation, so that its texture is held back at once
+    scene.tracking.max_slip = max_slip;
+    const RunDirectory directory(path(std::to_string(max_slip)));
+    std::filesystem::create_directories(directory.root());
+    const auto source = scenes::make_source(scene);
+    const tracking::Particles start = to_particles(source->state());
+    tracking::Tracker own(tracker_settings(scene), start);
+    StageClock clock;
+    Comparison comparison(scene, directory, {"normal", "affine"}, own, start, clock);
+    for (int frame = 1; frame <= 3; ++frame) {
+      source->advance_to(0.1 * frame);
+      const tracking::Particles particles = to_particles(source->state());
+      own.advance(particles);
+      comparison.advance(particles, 0);
+      comparison.record(frame, {}, {});
+    }
+    EXPECT_EQ(own.report().held_back > 0, max_slip > 0);
+    std::string table;
+    std::istringstream lines(read_text(directory.compare_csv()));
+    for (std::string line; std::getline(lines, line);) table += line.substr(0, line.rfind(',')) + '\n';  // no seconds
+    return table;
+  };
+  EXPECT_EQ(table_with(0.05), table_with(0));
 }
 
 }  // namespace

@@ -3,20 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "common/errors.h"
-#include "common/quantile.h"
+#include "tools/pipeline/method_measures.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/render/video.h"
 #include "tools/report/compare_report.h"
-#include "tracking/ground_truth/mesh_errors.h"
-#include "tracking/material/material.h"
-#include "tracking/mesh/mesh_measures.h"
-#include "tracking/mesh/texture_stretch.h"
 
 namespace flowskin::tools {
 namespace {
@@ -43,64 +36,18 @@ std::vector<std::string> split(const std::string& list) {
   return words;
 }
 
+/// Those of the scene, but for the method, and with a texture that slips freely: one that is held on the particles
+/// would show what they do, not what the method does.
 tracking::TrackerSettings settings_for(const scenes::Scene& scene, const std::string& method) {
   tracking::TrackerSettings settings = tracker_settings(scene);
   settings.velocity = method;
-  settings.max_slip = 0;  // shows what the method does
+  settings.max_slip = 0;
   return settings;
 }
 
-double relative(double error, double flow) { return flow > 0 ? std::sqrt(error / flow) : 0; }
-
-void add_markers(const tracking::Markers& markers, const tracking::MetaballField& field,
-                 const tracking::Particles& particles, CompareRow& row) {
-  std::vector<double> depths, drifts;
-  for (std::size_t i = 0; i < markers.ids.size(); ++i) {
-    if (markers.left[i]) continue;
-    depths.push_back(markers.depths[i]);
-    const Vec3 rest = tracking::rest_position_at(field, particles, markers.positions[i]);
-    drifts.push_back((rest - markers.rest_positions[i]).norm());
-  }
-  row.markers = int(depths.size());
-  row.markers_left = int(markers.ids.size() - depths.size());
-  row.marker_depth = quantile(depths, 0.5);
-  row.marker_drift = quantile(drifts, 0.5);
-}
-
-void add_marker_errors(const tracking::MarkerErrors& errors, CompareRow& row) {
-  row.texture_median = errors.texture.median;
-  row.texture_p90 = errors.texture.p90;
-  row.texture_rms = errors.texture.rms;
-  row.texture_found = errors.texture_found;
-  row.path_median = errors.path.median;
-  row.path_p90 = errors.path.p90;
-  row.path_rms = errors.path.rms;
-  row.path_found = errors.path_found;
-  row.vertex_path_median = errors.vertex_path.median;
-  row.vertex_path_rms = errors.vertex_path.rms;
-  row.vertices_kept = errors.vertices_kept;
-}
-
-void add_velocity_errors(const tracking::VelocityErrors& errors, CompareRow& row) {
-  row.velocity_error = relative(errors.error, errors.flow);
-  row.tangential_error = relative(errors.tangential_error, errors.tangential_flow);
-  row.flow_speed = std::sqrt(errors.flow);
-  row.tangential_speed = std::sqrt(errors.tangential_flow);
-}
-
-void add_mesh(const tracking::SurfaceMesh& mesh, CompareRow& row) {
-  row.vertices = mesh.positions.size();
-  row.triangles = mesh.triangles.size();
-  constexpr double degrees = 180 / std::numbers::pi;
-  const std::vector<double> angles = tracking::smallest_angles(mesh.positions, mesh.triangles);
-  row.angle_min = degrees * quantile(angles, 0);
-  row.angle_p05 = degrees * quantile(angles, 0.05);
-  if (!angles.empty())
-    row.angle_mean = degrees * std::accumulate(angles.begin(), angles.end(), 0.0) / double(angles.size());
-  std::vector<double> stretch;
-  for (const auto& triangle : tracking::texture_stretch(mesh)) stretch.push_back(triangle.largest);
-  row.stretch_median = quantile(stretch, 0.5);
-  row.stretch_p99 = quantile(stretch, 0.99);
+/// Whether the mesh of the scene's own run is the one that this method is to be judged by.
+bool serves_for(const std::string& method, const tracking::TrackerSettings& settings) {
+  return method == settings.velocity && settings.max_slip == 0;
 }
 
 }  // namespace
@@ -128,10 +75,14 @@ std::vector<std::string> methods_to_compare(const std::string& list) {
 Comparison::Comparison(const scenes::Scene& scene, const RunDirectory& directory,
                        const std::vector<std::string>& methods, const tracking::Tracker& scene_tracker,
                        const tracking::Particles& start, StageClock& clock)
-    : scene_(scene), directory_(directory), truth_(scene, scene_tracker.settings(), start), clock_(clock) {
+    : scene_(scene),
+      directory_(directory),
+      scene_max_slip_(scene_tracker.settings().max_slip),
+      truth_(scene, scene_tracker.settings(), start),
+      clock_(clock) {
   for (const std::string& method : methods) {
     Entry& entry = entries_.emplace_back(Entry{method, nullptr, &scene_tracker, {}});
-    if (method == scene_tracker.settings().velocity) continue;
+    if (serves_for(method, scene_tracker.settings())) continue;
     clock_.time(kOthers, [&] { entry.own = std::make_unique<tracking::Tracker>(settings_for(scene, method), start); });
     entry.tracker = entry.own.get();
   }
@@ -147,8 +98,12 @@ void Comparison::make_pictures(const Image& texture, const sph::Box& fluid) {
 std::string Comparison::description() const {
   std::vector<std::string> methods;
   for (const Entry& entry : entries_) methods.push_back(entry.method);
-  return fmt::format("comparing {} with {} markers that ride {}", joined(methods), truth_.markers().ids.size(),
-                     truth_.description());
+  std::string text = fmt::format("comparing {} with {} markers that ride {}; {}", joined(methods),
+                                 truth_.markers().ids.size(), truth_.description(), kSlipFreely);
+  if (scene_max_slip_ > 0)
+    text += fmt::format(" (the surface that is written is held within max_slip = {:.4g} m and is not among them)",
+                        scene_max_slip_);
+  return text;
 }
 
 void Comparison::advance(const tracking::Particles& particles, double scene_tracker_seconds) {
@@ -167,40 +122,18 @@ void Comparison::advance(const tracking::Particles& particles, double scene_trac
   truth_.start_markers(entries_.front().tracker->mesh());
 }
 
-CompareRow Comparison::measure(int frame, const Entry& entry, const tracking::MetaballField& field,
-                               const tracking::Flow& flow) const {
-  CompareRow row = entry.counts;
-  row.frame = frame;
-  row.time = truth_.particles().time;
-  row.method = entry.method;
-  const tracking::SurfaceMesh& mesh = entry.tracker->mesh();
-  row.components = entry.tracker->report().components;
-  row.max_distance = entry.tracker->report().max_distance;
-  add_mesh(mesh, row);
-  add_marker_errors(tracking::marker_errors(mesh, truth_.markers(), kReachInSpacings * scene_.particles.spacing), row);
-  add_velocity_errors(tracking::velocity_errors(mesh, flow), row);
-  if (!mesh.positions.empty() && !truth_.particles().positions.empty())
-    row.texture_drift = quantile(tracking::material_drift(mesh, field, truth_.particles()), 0.5);
-  return row;
-}
-
 void Comparison::record(int frame, const RestFrame& rest, const ParticleFrame& particles) {
   clock_.time("comparison", [&] { measure_all(frame); });
   if (pictures_) clock_.time("tiles", [&] { draw(frame, rest, particles); });
 }
 
 void Comparison::measure_all(int frame) {
-  const tracking::MetaballField field = truth_.field();
-  const tracking::Flow flow = truth_.flow();
-  CompareRow of_markers;
-  add_markers(truth_.markers(), field, truth_.particles(), of_markers);
+  const MethodMeasures measures(truth_, kReachInSpacings * scene_.particles.spacing);
   for (Entry& entry : entries_) {
-    CompareRow& row = rows_.emplace_back(measure(frame, entry, field, flow));
-    row.markers = of_markers.markers;
-    row.markers_left = of_markers.markers_left;
-    row.marker_depth = of_markers.marker_depth;
-    row.marker_drift = of_markers.marker_drift;
-    entry.counts = {};
+    CompareRow& row = rows_.emplace_back(std::exchange(entry.counts, {}));
+    row.frame = frame;
+    row.method = entry.method;
+    measures.add_to(row, *entry.tracker);
   }
   write_compare_csv(directory_.compare_csv(), rows_);
 }
@@ -217,15 +150,16 @@ void Comparison::finish(const std::function<void(const std::string&)>& report) c
   const bool video = pictures_ && scene_.output.video;
   write_plots(compare_plots(scene_.name, rows_, spacing), directory_.compare_plots());
   if (pictures_) pictures_->finish(video, report);
-  write_compare_markdown(directory_.compare_markdown(),
-                         {scene_.name, spacing, truth_.description(), pictures_ != nullptr, video && have_ffmpeg()},
-                         rows_);
+  write_compare_markdown(
+      directory_.compare_markdown(),
+      {scene_.name, spacing, truth_.description(), scene_max_slip_, pictures_ != nullptr, video && have_ffmpeg()},
+      rows_);
 }
 
 std::vector<std::string> Comparison::ranking() const {
   std::vector<std::string> lines = ranking_lines(rank_methods(rows_, scene_.particles.spacing));
-  lines.insert(lines.begin(),
-               "ranking by texture error (lengths in particle spacings; docs/compare.md explains the columns):");
+  lines.insert(lines.begin(), std::string("ranking by texture error (lengths in particle spacings; ") + kSlipFreely +
+                                  "; docs/compare.md explains the columns):");
   return lines;
 }
 

@@ -27,8 +27,9 @@ std::vector<std::string> methods_to_compare(const std::string& list);
 class Comparison {
  public:
   /// @param methods as methods_to_compare gives them; at least one
-  /// @param scene_tracker carries the mesh of the scene's own method; where that is among the methods, it serves for
-  /// it. Must outlive this. @param start the particles at the start, which the scene's tracker has seen.
+  /// All methods are carried with max_slip 0. @param scene_tracker carries the mesh of the scene's own method; where
+  /// that is among the methods and its max_slip is 0, it serves for it. Must outlive this. @param start the particles
+  /// at the start, which the scene's tracker has seen.
   /// @param clock gets the time that all this takes
   Comparison(const scenes::Scene& scene, const RunDirectory& directory, const std::vector<std::string>& methods,
              const tracking::Tracker& scene_tracker, const tracking::Particles& start, StageClock& clock);
@@ -69,13 +70,12 @@ class Comparison {
       if (own) visit_tracker(archive, *own);
     }
   };
-  CompareRow measure(int frame, const Entry& entry, const tracking::MetaballField& field,
-                     const tracking::Flow& flow) const;
   void measure_all(int frame);
   void draw(int frame, const RestFrame& rest, const ParticleFrame& particles);
 
   const scenes::Scene& scene_;
   const RunDirectory& directory_;
+  double scene_max_slip_;  // of the scene's own run (m)
   std::vector<Entry> entries_;
   GroundTruth truth_;
   StageClock& clock_;

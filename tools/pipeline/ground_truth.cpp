@@ -5,27 +5,19 @@
 #include <utility>
 
 namespace flowskin::tools {
-namespace {
 
-// Runge-Kutta steps of the markers: no particle moves further than this share of the effective radius in one of them.
-constexpr double kStepInRadii = 0.25;
-constexpr int kMostSteps = 1000;
-constexpr double kStepInRadians = 0.02;
-
-int steps_for(double ratio) { return static_cast<int>(std::clamp(std::ceil(ratio), 1.0, double{kMostSteps})); }
-
-}  // namespace
-
-GroundTruth::GroundTruth(const scenes::Scene& scene, tracking::TrackerSettings settings, tracking::Particles start)
+GroundTruth::GroundTruth(const scenes::Scene& scene, tracking::TrackerSettings settings, tracking::Particles start,
+                         const MarkerSettings& markers)
     : settings_(std::move(settings)),
-      most_depth_(kMostDepthInSpacings * scene.particles.spacing),
+      marker_settings_(markers),
+      most_depth_(markers.most_depth * scene.particles.spacing),
       particles_(std::move(start)) {
   if (scene.particles.source == scenes::ParticlesSpec::Source::prescribed) motion_.emplace(scene.particles.motion);
 }
 
 void GroundTruth::start_markers(const tracking::SurfaceMesh& mesh) {
   if (!markers_.ids.empty() || mesh.positions.empty()) return;
-  markers_ = tracking::start_markers(mesh, particles_.time, kMostMarkers);
+  markers_ = tracking::start_markers(mesh, particles_.time, marker_settings_.most);
   tracking::settle_markers(field(), most_depth_, markers_);
 }
 
@@ -41,9 +33,13 @@ tracking::Flow GroundTruth::flow() const {
   return motion_ ? exact_flow()(particles_.time) : tracking::particle_flow(field());
 }
 
+int GroundTruth::steps_for(double ratio) const {
+  return static_cast<int>(std::clamp(std::ceil(ratio), 1.0, double(marker_settings_.most_steps)));
+}
+
 int GroundTruth::exact_steps(double duration) const {
   const double turned = duration * motion_->spec().angular_velocity.norm();
-  return steps_for(std::max(duration / motion_->integration_step(), turned / kStepInRadians));
+  return steps_for(std::max(duration / motion_->integration_step(), turned / marker_settings_.step_angle));
 }
 
 void GroundTruth::advance(const tracking::Particles& particles) {
@@ -53,7 +49,8 @@ void GroundTruth::advance(const tracking::Particles& particles) {
       tracking::advect_markers(exact_flow(), particles.time, exact_steps(particles.time - particles_.time), markers_);
     } else {
       tracking::advect_markers(tracking::particle_flow(paths, settings_.field), particles.time,
-                               steps_for(paths.longest_path() / (kStepInRadii * settings_.field.radius)), markers_);
+                               steps_for(paths.longest_path() / (marker_settings_.step * settings_.field.radius)),
+                               markers_);
     }
   }
   particles_ = particles;

@@ -11,13 +11,10 @@
 #include "tracking/material/material.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/self_intersections.h"
-#include "tracking/mesh/texture_stretch.h"
 
 namespace flowskin::tools {
 
 namespace {
-
-using quantile;
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kGoodAngle = 10 * kDegree;
@@ -49,10 +46,7 @@ void describe_triangles(const tracking::SurfaceMesh& mesh, double edge_length, F
   row.good_angles = tracking::share_of_angles_above(angles, kGoodAngle);
   row.good_edges = tracking::share_of_edges_within(mesh.positions, mesh.triangles, kShortestGoodEdge * edge_length,
                                                    kLongestGoodEdge * edge_length);
-  std::vector<double> stretch;
-  for (const auto& triangle : tracking::texture_stretch(mesh)) stretch.push_back(triangle.largest);
-  row.stretch_median = quantile(stretch, 0.5);
-  row.stretch_p99 = quantile(stretch, 0.99);
+  describe_stretch(mesh, row);
 }
 
 }  // namespace

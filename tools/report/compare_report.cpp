@@ -99,7 +99,7 @@ std::vector<std::string> ranking_lines(const std::vector<MethodScore>& ranking) 
 
 PlotSheet compare_plots(const std::string& scene, const std::vector<CompareRow>& rows, double spacing) {
   PlotSheet sheet;
-  sheet.title = scene + ": velocity methods against passive markers";
+  sheet.title = scene + ": velocity methods against passive markers (all with max_slip 0)";
   const auto in_spacings = [spacing](double CompareRow::*member) -> Value {
     return [=](const CompareRow& row) { return row.*member / spacing; };
   };
@@ -132,8 +132,15 @@ void write_compare_markdown(const std::filesystem::path& file, const CompareSett
   text += fmt::format(
       "Errors of the surface against passive markers that ride {}. Texture and path errors are medians over the\n"
       "markers, averaged over the frames, in particle spacings ({:.4g} m); velocity errors are root mean squares over "
-      "surface\nand time, relative to the speed. docs/compare.md explains how they are measured.\n\n",
-      setting.truth, setting.spacing);
+      "surface\nand time, relative to the speed. docs/compare.md explains how they are measured.\n\n"
+      "All methods in the same conditions: {}, so that each shows what its velocity does.",
+      setting.truth, setting.spacing, kSlipFreely);
+  if (setting.scene_max_slip > 0)
+    text += fmt::format(
+        "\nThe surface in surface/ is another one: the scene holds its texture within max_slip = {:.4g} m of its "
+        "particles.",
+        setting.scene_max_slip);
+  text += "\n\n";
   text +=
       "| rank | method | texture error | at the end | path error | velocity error | tangential | off the particles | "
       "stretch (p99, at the end) | extracted anew | tracking (s) |\n"

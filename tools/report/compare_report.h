@@ -31,11 +31,15 @@ std::vector<std::string> ranking_lines(const std::vector<MethodScore>& ranking);
 /// One panel an error, over time; methods in the order of the rows.
 PlotSheet compare_plots(const std::string& scene, const std::vector<CompareRow>& rows, double spacing);
 
+/// What table, plots and log say of max_slip: the same for all methods.
+inline constexpr const char* kSlipFreely = "the texture slips freely in all of them: max_slip is 0";
+
 /// What compare.md says beside the tables.
 struct CompareSetting {
   std::string scene;
-  double spacing = 0;  ///< m
-  std::string truth;   ///< Where the true velocity comes from, in words.
+  double spacing = 0;         ///< m
+  std::string truth;          ///< Where the true velocity comes from, in words.
+  double scene_max_slip = 0;  ///< Of the scene's own run (m), which is not compared where this is not 0.
   bool has_pictures = false, has_video = false;
 };
 
