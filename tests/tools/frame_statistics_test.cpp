@@ -117,6 +117,7 @@ TEST(WorstFrames, NamesTheWorstAndItsFrame) {
     rows[i].frame = i;
     rows[i].vertices = 200;
     rows[i].kept_ids = i == 0 ? 0 : 200;
+    rows[i].kept_first_ids = 200 - 10 * i;
     rows[i].volume = rows[i].expected_volume = 1;
     rows[i].good_angles = rows[i].good_edges = 1;
   }
@@ -127,13 +128,16 @@ TEST(WorstFrames, NamesTheWorstAndItsFrame) {
   rows[1].max_distance = 2e-5;
   rows[2].good_angles = 0.999;
   rows[3].good_edges = 0.5;
+  rows[2].vertices = 300;  // half of them are new
   rows[2].kept_ids = 150;
+  rows[3].kept_ids = 290;
+  rows[3].kept_first_ids = 120;
   rows[3].same_topology = 0;
   EXPECT_EQ(
       worst_frames(rows, 0.5),
       "worst frames: 7 self-intersections (1), Hausdorff 0.50 edge lengths (2), volume -2.00 % (3), |f|/|grad f| "
-      "2.0e-05 m (1), good angles 99.90 % (2), good edges 50.00 % (3), ids kept 75.0 % (2); topology differs in 1 "
-      "of 4 frames");
+      "2.0e-05 m (1), good angles 99.90 % (2), good edges 50.00 % (3), 75.0 % of the ids of the frame before kept "
+      "(2); 60.0 % of the first frame's ids are there at the end; topology differs in 1 of 4 frames");
 }
 
 TEST(WorstFrames, SayNothingWithoutASurface) {

@@ -67,6 +67,8 @@ FrameRow FrameStatistics::finish_frame(int frame, const scenes::ParticleSource& 
     std::vector<std::uint64_t> ids = surface->mesh.ids;
     std::sort(ids.begin(), ids.end());
     row.kept_ids = count_common(ids, previous_ids_);
+    if (first_ids_.empty()) first_ids_ = ids;
+    row.kept_first_ids = count_common(ids, first_ids_);
     previous_ids_ = std::move(ids);
   }
   row.substeps = substeps_;

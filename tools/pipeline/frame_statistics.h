@@ -31,7 +31,7 @@ class FrameStatistics {
   void visit(Archive& archive) {
     archive.section("statistics");
     archive(substeps_, reextractions_, frames_reextracted_, splits_, collapses_, flips_, regions_, seconds_topology_);
-    archive(last_reason_, previous_ids_, tracking_seconds_);
+    archive(last_reason_, previous_ids_, first_ids_, tracking_seconds_);
   }
 
  private:
@@ -39,7 +39,7 @@ class FrameStatistics {
   int splits_ = 0, collapses_ = 0, flips_ = 0, regions_ = 0;
   double seconds_topology_ = 0;
   std::string last_reason_;
-  std::vector<std::uint64_t> previous_ids_;  // ascending
+  std::vector<std::uint64_t> previous_ids_, first_ids_;  // ascending; of the first frame that has a surface
   std::vector<std::pair<std::string, double>> tracking_seconds_{
       {"velocity", 0}, {"projection", 0}, {"fairing", 0}, {"topology", 0}};
 };

@@ -15,6 +15,19 @@ double volume_error(const FrameRow& row) {
   return row.volume == row.expected_volume ? 0 : 100 * (row.volume / row.expected_volume - 1);
 }
 
+/// Share of the ids of one frame that are there in the next.
+double kept_share(const FrameRow& before, const FrameRow& row) {
+  return before.vertices > 0 ? 100.0 * row.kept_ids / double(before.vertices) : 100;
+}
+
+/// What has become of the ids of the first frame that has a surface; empty where none has.
+std::string first_ids_at_the_end(const std::vector<FrameRow>& rows) {
+  const auto first = std::find_if(rows.begin(), rows.end(), has_surface);
+  if (first == rows.end()) return "";
+  return fmt::format("; {:.1f} % of the first frame's ids are there at the end",
+                     100.0 * rows.back().kept_first_ids / double(first->vertices));
+}
+
 }  // namespace
 
 std::string worst_frames(const std::vector<FrameRow>& rows, double edge_length) {
@@ -40,9 +53,10 @@ std::string worst_frames(const std::vector<FrameRow>& rows, double edge_length) 
   high("|f|/|grad f| {:.1e} m", [](const FrameRow& row) { return row.max_distance; });
   low(all, "good angles {:.2f} %", [](const FrameRow& row) { return 100 * row.good_angles; });
   low(all, "good edges {:.2f} %", [](const FrameRow& row) { return 100 * row.good_edges; });
-  if (rows.size() > 1)
-    low(all + 1, "ids kept {:.1f} %", [](const FrameRow& row) { return 100.0 * row.kept_ids / double(row.vertices); });
+  const auto kept = [&](const FrameRow& row) { return kept_share(rows[std::size_t(&row - rows.data()) - 1], row); };
+  if (rows.size() > 1) low(all + 1, "{:.1f} % of the ids of the frame before kept", kept);
   if (text.empty()) return text;
+  text += first_ids_at_the_end(rows);
   const auto differs = std::count_if(rows.begin(), rows.end(), [](const FrameRow& row) { return !row.same_topology; });
   return text + fmt::format("; topology differs in {} of {} frames", differs, rows.size());
 }
