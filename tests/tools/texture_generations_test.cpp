@@ -287,6 +287,41 @@ TEST(TextureGenerations, LateParticlesContinueTheirMotionBackwards) {
   EXPECT_TRUE(particles.layers.at(0).empty());
 }
 
+template <class State>
+std::size_t bytes_saved(const State& state) {
+  std::size_t size = 0;
+  StateWriter writer([&](std::string_view bytes) { size += bytes.size(); });
+  writer(state);
+  writer.flush();
+  return size;
+}
+
+TEST(TextureGenerations, ForgetParticlesThatAreGone) {
+  const ShearedBall ball;
+  tracking::Tracker tracker = ball.tracker();
+  scenes::TextureSpec texture = texture_that("fade");
+  texture.stretch_limit = 1.01;
+  TextureGenerations generations(texture, rest_frame(ball.at(0).positions));
+  tracking::Particles particles = ball.at(0.3);
+  tracker.advance(particles);
+  generations.update(tracker, particles, 0.3);
+  ASSERT_EQ(generations.generations(), 2);
+  // A jet of 20 particles a step, drained in the next one.
+  std::size_t first = 0;
+  for (int step = 0; step < 50; ++step) {
+    particles = ball.at(0.3 + 0.01 * step);
+    for (int i = 0; i < 20; ++i) {
+      particles.ids.push_back(10000 + std::uint64_t(20 * step + i));
+      particles.positions.emplace_back(0.1 * i, 2, 0);
+      particles.velocities.emplace_back(1, 0, 0);
+    }
+    generations.carry(particles);
+    if (step == 0) first = bytes_saved(generations);
+    EXPECT_EQ(bytes_saved(generations), first) << step;
+    EXPECT_EQ(particles.layers.at(0).front(), ball.at(0.3).positions.front());
+  }
+}
+
 // ---------------------------------------------------------------- files
 
 class TextureBlendFiles : public IoTest {};

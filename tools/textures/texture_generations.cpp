@@ -1,14 +1,10 @@
 #include "tools/textures/texture_generations.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace flowskin::tools {
 namespace {
-
-constexpr double kFadeTime = 0.5;     // s, at least, from one texture to another
-constexpr double kBeginShare = 0.05;  // of the area past the limit: a newer generation begins
-constexpr double kEndShare =
-    0.10;  // of the area past the limit in spite of it: it takes over everywhere, and the next may begin
 
 bool all_one(const std::vector<double>& weights) {
   return std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 1; });
@@ -19,10 +15,18 @@ std::vector<double> one_minus(std::vector<double> weights) {
   return weights;
 }
 
+/// Drops the entries of ids that are not among these, all of which have one: particles that were drained or left.
+void forget_others(const std::vector<std::uint64_t>& ids, std::unordered_map<std::uint64_t, Vec3>& places) {
+  if (places.size() == ids.size()) return;
+  const std::unordered_set<std::uint64_t> present(ids.begin(), ids.end());
+  std::erase_if(places, [&](const auto& entry) { return !present.contains(entry.first); });
+}
+
 }  // namespace
 
-TextureGenerations::TextureGenerations(const scenes::TextureSpec& texture, const RestFrame& rest)
-    : texture_(texture), rest_(rest) {}
+TextureGenerations::TextureGenerations(const scenes::TextureSpec& texture, const RestFrame& rest,
+                                       const FadeSettings& fading)
+    : texture_(texture), rest_(rest), fading_(fading) {}
 
 void TextureGenerations::carry(tracking::Particles& particles) {
   particles.layers.assign(layers_.size(), {});
@@ -36,11 +40,12 @@ void TextureGenerations::carry(tracking::Particles& particles) {
         place->second -= (particles.time - layer.time) * particles.velocities[i];
       particles.layers[k].push_back(place->second);
     }
+    forget_others(particles.ids, layer.places);
   }
 }
 
 void TextureGenerations::update(tracking::Tracker& tracker, const tracking::Particles& particles, double duration) {
-  const double most = duration / kFadeTime;
+  const double most = duration / fading_.time;
   const tracking::SurfaceMesh& mesh = tracker.mesh();
   if (texture_.when_stretched == "fade") {
     overstretched_ = fade(tracker, particles, most);
@@ -56,14 +61,14 @@ double TextureGenerations::fade(tracking::Tracker& tracker, const tracking::Part
   if (!has_newer()) {
     weights_.reset(mesh);
     const double share = measure(mesh);
-    if (share > kBeginShare) begin(tracker, particles);
+    if (share > fading_.begin_share) begin(tracker, particles);
     return share;  // the newer one does not show yet
   }
   const std::vector<double> targets = taking_over_ ? std::vector<double>(mesh.ids.size(), 1.0)
                                                    : stretch_blend(mesh, older(mesh), texture_.stretch_limit);
   weights_.follow(mesh, targets, most);
   const double share = measure(mesh);
-  if (share > kEndShare) taking_over_ = true;
+  if (share > fading_.end_share) taking_over_ = true;
   if (taking_over_ && all_one(weights_.weights())) promote(tracker);
   return share;  // what shows stays the same
 }

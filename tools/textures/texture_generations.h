@@ -10,16 +10,25 @@
 
 namespace flowskin::tools {
 
+/// When one generation of the texture gives way to the next.
+struct FadeSettings {
+  double time = 0.5;          ///< s, at least, that a texture takes to fade into another.
+  double begin_share = 0.05;  ///< Of the area past the limit: a newer generation begins.
+  /// Of the area past the limit in spite of it: the newer one takes over everywhere, and the next may begin.
+  double end_share = 0.10;
+};
+
 /// Keeps the textures of a tracked surface fit to be seen. A generation of the texture is fixed to the places that the
 /// material had at one moment. The first are the rest positions; with "fade" a newer one begins where too much of the
 /// surface is stretched, and shows where the older is stretched. Once too much is stretched in spite of it, it takes
 /// over everywhere, and becomes the older one in a frame in which only it shows: nothing jumps.
 class TextureGenerations {
  public:
-  TextureGenerations(const scenes::TextureSpec& texture, const RestFrame& rest);
+  TextureGenerations(const scenes::TextureSpec& texture, const RestFrame& rest, const FadeSettings& fading = {});
 
   /// Tells particles their places in the generations, before they are given to the tracker. Particles that came later
-  /// continue their first motion backwards. Those without lasting ids stay without.
+  /// continue their first motion backwards. Those without lasting ids stay without. Particles that are not among these
+  /// are forgotten: one that comes back counts as new.
   void carry(tracking::Particles& particles);
 
   /// Moves on by `duration` (s) to the present mesh of the tracker, whose layers are the generations but the first.
@@ -68,6 +77,7 @@ class TextureGenerations {
 
   scenes::TextureSpec texture_;
   RestFrame rest_;
+  FadeSettings fading_;
   std::vector<Layer> layers_;  // in the order of the mesh's
   bool older_is_rest_ = true, taking_over_ = false;
   FollowingWeights weights_;
