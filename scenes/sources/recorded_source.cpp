@@ -7,6 +7,8 @@
 #include <numeric>
 
 #include "common/errors.h"
+#include "scenes/io/checksum.h"
+#include "scenes/io/read_bytes.h"
 #include "scenes/sources/forward_time.h"
 #include "scenes/sources/particle_spacing.h"
 #include "scenes/sources/wall_points.h"
@@ -190,6 +192,7 @@ void RecordedSource::read_into_cache(std::size_t k) {
   if (sequence_.ids != ParticleSequence::Ids::of_files) std::iota(state.ids.begin(), state.ids.end(), 0);
   settle_rest_positions(k, state);
   cache_[k] = std::move(state);
+  if (!checksums_.contains(k)) checksums_[k] = checksum(0, read_bytes(sequence_.files[k]));
 }
 
 namespace {
@@ -216,11 +219,12 @@ struct SequenceMark {
   }
 };
 
+[[noreturn]] void refuse(const std::string& what) {
+  throw InputError(what + "; the run cannot be resumed with other particles: start it anew");
+}
+
 /// @throws InputError where the files are no longer those of the mark.
 void check_same_files(const SequenceMark& then, const SequenceMark& now) {
-  const auto refuse = [](const std::string& what) {
-    throw InputError(what + "; the run cannot be resumed with other particles: start it anew");
-  };
   for (std::size_t k = 0; k < then.names.size(); ++k) {
     if (k >= now.names.size() || now.names[k] != then.names[k])
       refuse(fmt::format("{} is no longer among the recorded particles", then.names[k]));
@@ -230,21 +234,34 @@ void check_same_files(const SequenceMark& then, const SequenceMark& now) {
   if (then.ids != now.ids) refuse("whether the recorded particles have lasting ids has changed");
 }
 
+/// @throws InputError where a file that has been read holds something else now. Those to come may change: nothing has
+/// come of them yet.
+void check_same_content(const std::map<std::uint64_t, std::uint32_t>& checksums, const ParticleSequence& sequence) {
+  for (const auto& [k, then] : checksums) {
+    const std::filesystem::path& file = sequence.files.at(k);
+    if (checksum(0, read_bytes(file)) != then)
+      refuse(fmt::format("what is in {} has changed since the run that is to be resumed", file.filename().string()));
+  }
+}
+
 }  // namespace
 
 void RecordedSource::save(StateWriter& writer) const {
   std::vector<std::uint64_t> cached;
   for (const auto& entry : cache_) cached.push_back(entry.first);
   writer.section("recorded particles");
-  writer(SequenceMark(sequence_), state_, rest_positions_, renewals_, cached);
+  writer(SequenceMark(sequence_), state_, rest_positions_, renewals_, cached, checksums_);
 }
 
 void RecordedSource::restore(StateReader& reader) {
   SequenceMark mark;
   std::vector<std::uint64_t> cached;
   reader.section("recorded particles");
-  reader(mark, state_, rest_positions_, renewals_, cached);
+  reader(mark, state_, rest_positions_, renewals_, cached, checksums_);
   check_same_files(mark, SequenceMark(sequence_));
+  if (!checksums_.empty() && checksums_.rbegin()->first >= sequence_.files.size())
+    throw StateError("the saved state names a file that is not there");
+  check_same_content(checksums_, sequence_);
   cache_.clear();
   take_back_renewals(cached);
   for (const std::uint64_t k : cached) {

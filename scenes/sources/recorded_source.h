@@ -1,6 +1,7 @@
 // Particles of a recorded sequence of files, whoever wrote it.
 #pragma once
 
+#include <cstdint>
 #include <map>
 
 #include "scenes/scene.h"
@@ -57,8 +58,9 @@ class RecordedSource : public ParticleSource {
   double spacing_;
   tracking::Walls walls_;
   std::map<std::size_t, ParticleState> cache_;
-  std::map<std::uint64_t, Vec3> rest_positions_;  ///< By id; where the files have none.
-  std::vector<Renewal> renewals_;                 ///< By the cached files, in the order in which they were made.
+  std::map<std::uint64_t, Vec3> rest_positions_;      ///< By id; where the files have none.
+  std::vector<Renewal> renewals_;                     ///< By the cached files, in the order in which they were made.
+  std::map<std::uint64_t, std::uint32_t> checksums_;  ///< Of the files that have been read.
   ParticleState state_;
 };
 

@@ -369,6 +369,32 @@ TEST_F(RecordedSourceTest, ParticlesThatAreUsedAgainAreNewMaterial) {
   }
 }
 
+TEST_F(RecordedSourceTest, IsNotResumedWithOtherParticles) {
+  const auto write_file = [&](int k, double y) {
+    write(fmt::format("f_{}.ply", k), {{1, Vec3(k, y, 0)}, {2, Vec3(k, 0, 2)}}, with_ids | with_velocities);
+  };
+  for (int k = 0; k < 6; ++k) write_file(k, 1);
+  std::string saved;
+  {
+    const auto source = open("f_*.ply", 0.1);
+    source->advance_to(0.15);  // between the files 1 and 2
+    StateWriter writer([&](std::string_view bytes) { saved += bytes; });
+    source->save(writer);
+    writer.flush();
+  }
+  const auto resume = [&] {
+    const auto source = open("f_*.ply", 0.1);
+    StateReader reader(saved);
+    source->restore(reader);
+    return source->state().positions.front();
+  };
+  EXPECT_EQ(resume(), Vec3(1.5, 1, 0));
+  write_file(5, 3);  // nothing has come of it yet
+  EXPECT_EQ(resume(), Vec3(1.5, 1, 0));
+  write_file(1, 3);  // as long as before
+  EXPECT_THAT(error_of([&] { resume(); }), AllOf(HasSubstr("f_1.ply"), HasSubstr("changed")));
+}
+
 TEST_F(RecordedSourceTest, SpacingIsEstimatedFromDistances) {
   std::vector<Vec3> lattice;
   for (int i = 0; i < 1000; ++i) lattice.emplace_back(0.02 * Vec3(i % 10, i / 10 % 10, i / 100));

@@ -11,6 +11,7 @@
 #include "scenes/scene_file.h"
 #include "tools/pipeline/checkpoint.h"
 #include "tools/pipeline/comparison_pictures.h"
+#include "tools/pipeline/input_files.h"
 #include "tools/pipeline/resume.h"
 #include "tools/report/run_log.h"
 #include "tools/report/time_table.h"
@@ -31,7 +32,9 @@ class Checkpoints : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  static CheckpointHeader header(int frame) { return {version_text(), "{\"frames\": 3}", {{"a", 1}}, "", frame}; }
+  static CheckpointHeader header(int frame) {
+    return {version_text(), "{\"frames\": 3}", {{"a", "a.obj", 1}}, "", frame};
+  }
   static void save(const CheckpointFolder& folder, int frame) {
     folder.save(header(frame), [&](StateWriter& writer) { writer(frame, std::string(3000000, 'x')); });
   }
@@ -70,6 +73,22 @@ TEST_F(Checkpoints, TheTwoNewestAreKept) {
   EXPECT_EQ(folder.complete_frames(), -1);
 }
 
+TEST_F(Checkpoints, AreNotResumedWithOtherFiles) {
+  save(CheckpointFolder(folder_), 1);
+  const Checkpoint checkpoint(folder_ / "frame_0001.bin");
+  CheckpointHeader now = header(1);
+  now.files[0].file = "elsewhere/a.obj";
+  EXPECT_THAT(check_resumable(checkpoint, now, 3), ElementsAre());
+  now.files[0].checksum = 2;
+  try {
+    check_resumable(checkpoint, now, 3);
+    FAIL() << "must throw";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a (what is in the file elsewhere/a.obj)"));
+    EXPECT_THAT(error.what(), HasSubstr("or run the scene anew"));
+  }
+}
+
 TEST_F(Checkpoints, AnUnfinishedOneIsNotThere) {
   const CheckpointFolder folder(folder_);
   save(folder, 1);
@@ -106,6 +125,36 @@ TEST_F(Checkpoints, StaleDraftsAreRemoved) {
   scenes::remove_stale_drafts(folder_);
   EXPECT_EQ(count(), 1U);
   EXPECT_TRUE(fs::exists(folder_ / "mine.part"));
+}
+
+TEST(InputFiles, EveryMeshAndTheTextureCount) {
+  scenes::Scene scene;
+  const sph::TriangleMesh triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  scene.bodies.emplace_back().body.mesh = scene.boundaries.emplace_back().boundary.mesh = triangle;
+  scene.emitters.emplace_back().emitter.mesh = scene.sinks.emplace_back().sink.mesh = triangle;
+  Image texture{2, 1, {Color{1, 2, 3}, Color{4, 5, 6}}};
+  const auto files_then = input_files(scene, texture);
+  const auto changed = [&] {
+    const auto now = input_files(scene, texture);
+    EXPECT_EQ(now.size(), files_then.size());
+    std::vector<std::string> keys;
+    for (std::size_t k = 0; k < now.size(); ++k)
+      if (now[k] != files_then[k]) keys.push_back(now[k].key);
+    return keys;
+  };
+  EXPECT_THAT(changed(), ElementsAre());
+  const auto changed_with = [&](sph::TriangleMesh& mesh) {
+    mesh.positions[2].y() = 1.5;
+    const auto keys = changed();
+    mesh = triangle;
+    return keys;
+  };
+  EXPECT_THAT(changed_with(scene.bodies[0].body.mesh), ElementsAre("bodies[0].file"));
+  EXPECT_THAT(changed_with(scene.emitters[0].emitter.mesh), ElementsAre("emitters[0].file"));
+  EXPECT_THAT(changed_with(scene.sinks[0].sink.mesh), ElementsAre("sinks[0].file"));
+  EXPECT_THAT(changed_with(scene.boundaries[0].boundary.mesh), ElementsAre("boundaries[0].file"));
+  texture.pixels[1] = {4, 5, 7};
+  EXPECT_THAT(changed(), ElementsAre("texture.image"));
 }
 
 TEST(SceneChanges, NamesTheKeysThatDiffer) {

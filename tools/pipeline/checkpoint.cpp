@@ -1,12 +1,12 @@
 #include "tools/pipeline/checkpoint.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <fstream>
 
 #include "common/errors.h"
 #include "scenes/io/atomic_file.h"
+#include "scenes/io/checksum.h"
 #include "scenes/io/read_bytes.h"
 #include "tools/pipeline/run_directory.h"
 #include "tools/report/run_log.h"
@@ -16,11 +16,12 @@ namespace flowskin::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using scenes::checksum;
 
 // magic | format version (u32) | header and state | length of all before (u64) | CRC-32 of all before (u32) | end
 constexpr std::string_view kMagic = "flowskin checkpoint\n";
 constexpr std::string_view kEnd = "the end\n";
-constexpr std::uint32_t kFormatVersion = 4;
+constexpr std::uint32_t kFormatVersion = 5;
 constexpr std::size_t kHeadSize = kMagic.size() + sizeof(std::uint32_t);
 constexpr std::size_t kTailSize = sizeof(std::uint64_t) + sizeof(std::uint32_t) + kEnd.size();
 constexpr std::size_t kKept = 2;
@@ -34,11 +35,6 @@ Number number_at(std::string_view bytes, std::size_t place) {
 }
 
 }  // namespace
-
-std::uint32_t checksum(std::uint32_t before, std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
-}
 
 void Checkpoint::refuse(const std::string& reason) const {
   throw InputError(fmt::format("{} {}", file_.string(), reason));

@@ -13,18 +13,30 @@
 
 namespace flowskin::tools {
 
+/// What was in a file that a key of the scene names.
+struct FileContent {
+  std::string key;             ///< Such as "emitters[0].file".
+  std::string file;            ///< As the scene names it.
+  std::uint32_t checksum = 0;  ///< Of what was read from it.
+
+  bool operator==(const FileContent&) const = default;
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(key, file, checksum);
+  }
+};
+
 /// What a checkpoint says of the run that it belongs to.
 struct CheckpointHeader {
   std::string program;  ///< As version_text().
   std::string scene;    ///< The scene as run (JSON).
-  /// Of the keys that name files: a checksum of what was in them.
-  std::vector<std::pair<std::string, std::uint32_t>> contents;
+  std::vector<FileContent> files;
   std::string compare;  ///< The methods compared; empty: none.
   int frame = -1;       ///< The last one that is written; the state may be on its way to the next.
 
   template <class Archive>
   void visit(Archive& archive) {
-    archive(program, scene, contents, compare, frame);
+    archive(program, scene, files, compare, frame);
   }
 };
 
@@ -74,8 +86,5 @@ class CheckpointFolder {
 
   std::filesystem::path folder_;
 };
-
-/// CRC-32 of bytes, going on from that of bytes before them; 0 at the start.
-std::uint32_t checksum(std::uint32_t before, std::string_view bytes);
 
 }  // namespace flowskin::tools

@@ -71,14 +71,6 @@ std::vector<std::pair<std::string, std::string>> values_of(const std::string& sc
   return values;
 }
 
-std::uint32_t checksum_of(const sph::TriangleMesh& mesh) {
-  std::uint32_t sum = 0;
-  StateWriter writer([&](std::string_view bytes) { sum = checksum(sum, bytes); });
-  writer(mesh.positions, mesh.triangles);
-  writer.flush();
-  return sum;
-}
-
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
@@ -98,19 +90,6 @@ std::unique_ptr<Checkpoint> open_checkpoint(const RunDirectory& directory) {
                     "frames (0: never) and when the run is interrupted; leave out --resume to start anew",
                     root));
   return std::make_unique<Checkpoint>(*newest);
-}
-
-std::vector<std::pair<std::string, std::uint32_t>> checksums_of_files(const scenes::Scene& scene,
-                                                                      const Image& texture) {
-  std::vector<std::pair<std::string, std::uint32_t>> sums;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    sums.emplace_back(fmt::format("bodies[{}].file", i), checksum_of(scene.bodies[i].body.mesh));
-  for (std::size_t i = 0; i < scene.boundaries.size(); ++i)
-    sums.emplace_back(fmt::format("boundaries[{}].file", i), checksum_of(scene.boundaries[i].boundary.mesh));
-  const std::string_view pixels(reinterpret_cast<const char*>(texture.pixels.data()),
-                                texture.pixels.size() * sizeof(Color));
-  sums.emplace_back("texture.image", checksum(static_cast<std::uint32_t>(texture.width), pixels));
-  return sums;
 }
 
 SceneChanges scene_changes(const std::string& then, const std::string& now) {
@@ -136,11 +115,11 @@ SceneChanges scene_changes(const std::string& then, const std::string& now) {
 std::vector<std::string> check_resumable(const Checkpoint& checkpoint, const CheckpointHeader& now, int frames) {
   const CheckpointHeader& then = checkpoint.header();
   SceneChanges changes = scene_changes(then.scene, now.scene);
-  for (const auto& content : now.contents) {
-    const auto same_key = [&](const auto& other) { return other.first == content.first; };
-    const auto old = std::find_if(then.contents.begin(), then.contents.end(), same_key);
-    if (old != then.contents.end() && old->second != content.second)
-      changes.forbidden.push_back(content.first + " (what is in the file)");
+  for (const FileContent& content : now.files) {
+    const auto same_key = [&](const FileContent& other) { return other.key == content.key; };
+    const auto old = std::find_if(then.files.begin(), then.files.end(), same_key);
+    if (old != then.files.end() && old->checksum != content.checksum)
+      changes.forbidden.push_back(fmt::format("{} (what is in the file {})", content.key, content.file));
   }
   if (!changes.forbidden.empty())
     checkpoint.refuse(

@@ -3,22 +3,16 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "scenes/scene.h"
 #include "tools/pipeline/checkpoint.h"
 #include "tools/pipeline/run_directory.h"
-#include "tools/textures/image.h"
 
 namespace flowskin::tools {
 
 /// The newest checkpoint of a run directory.
 /// @throws InputError where there is none, saying why, or it is damaged.
 std::unique_ptr<Checkpoint> open_checkpoint(const RunDirectory& directory);
-
-/// Checksums of what the files hold that the scene names, by key.
-std::vector<std::pair<std::string, std::uint32_t>> checksums_of_files(const scenes::Scene& scene, const Image& texture);
 
 /// Keys in which two scenes, as written by write_scene, differ, in the order of the second.
 struct SceneChanges {

@@ -9,7 +9,9 @@
 #include "scenes/scene_checks.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/make_source.h"
+#include "tools/pipeline/input_files.h"
 #include "tools/pipeline/tracker_bridge.h"
+#include "tools/report/run_log.h"
 #include "tools/report/stage_clock.h"
 #include "tools/textures/texture_mapping.h"
 
@@ -28,7 +30,7 @@ scenes::Scene scene_as_run(scenes::Scene scene, const RunOptions& options) {
 }  // namespace
 
 RunStart start_run(scenes::Scene scene, const RunOptions& options) {
-  RunStart start{scene_as_run(std::move(scene), options), nullptr, 0};
+  RunStart start{scene_as_run(std::move(scene), options), nullptr, {}, {}, 0};
   const double started = wall_seconds();
   start.source = scenes::make_source(start.scene);
   start.seconds = wall_seconds() - started;
@@ -46,7 +48,13 @@ RunStart start_run(scenes::Scene scene, const RunOptions& options) {
     start.scene.texture.rest_center = rest.center;
     start.scene.texture.rest_size = rest.size;
   }
+  start.texture = make_texture(start.scene.texture.image, start.scene.directory);
+  start.files = input_files(start.scene, start.texture);
   return start;
+}
+
+CheckpointHeader checkpoint_header(const RunStart& start, const std::string& compare) {
+  return {version_text(), scenes::write_scene(start.scene), start.files, compare};
 }
 
 void check_inputs_stay(const scenes::Scene& scene, const RunDirectory& directory) {

@@ -19,6 +19,8 @@ struct RestFrame {
 };
 
 RestFrame rest_frame(const std::vector<Vec3>& rest_positions);
+/// As a scene says it.
+inline RestFrame rest_frame_of(const scenes::TextureSpec& texture) { return {texture.rest_center, texture.rest_size}; }
 
 /// Texture coordinates a triangle corner. box: the axis that the triangle faces at rest; spherical: the seam is closed
 /// by continuing u past 1 on the triangles that cross it.

@@ -1,4 +1,4 @@
-#include "tools/pipeline/scene_run.h"
+#include "tools/pipeline/run_scene.h"
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -9,9 +9,9 @@
 
 #include "common/errors.h"
 #include "scenes/scene_file.h"
+#include "tools/pipeline/frame_loop.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/pipeline/resume.h"
-#include "tools/pipeline/run_loop.h"
 #include "tools/pipeline/run_start.h"
 #include "tools/pipeline/tracker_bridge.h"
 
@@ -23,9 +23,7 @@ void resume_scene(scenes::Scene scene, RunOptions& options, const RunDirectory& 
   std::unique_ptr<Checkpoint> checkpoint = open_checkpoint(directory);
   if (options.compare.empty()) options.compare = checkpoint->header().compare;
   RunStart start = start_run(std::move(scene), options);
-  const Image texture = make_texture(start.scene.texture.image, start.scene.directory);
-  const CheckpointHeader now{version_text(), scenes::write_scene(start.scene), checksums_of_files(start.scene, texture),
-                             options.compare};
+  const CheckpointHeader now = checkpoint_header(start, options.compare);
   const std::vector<std::string> changed = check_resumable(*checkpoint, now, start.scene.frames);
   const CheckpointFolder checkpoints(directory.checkpoint_folder());
   if (checkpoints.complete_frames() == start.scene.frames) {
@@ -37,7 +35,7 @@ void resume_scene(scenes::Scene scene, RunOptions& options, const RunDirectory& 
   directory.prepare_to_resume();
   checkpoints.unmark_complete();
   catch_interruptions();
-  SceneRun run(options, std::move(start), directory, checkpoint.get());
+  FrameLoop run(options, std::move(start), directory, checkpoint.get());
   checkpoint.reset();
   run.tell_changes(changed);
   run.run();
@@ -67,7 +65,7 @@ void run_scene(scenes::Scene scene, const RunOptions& given) {
   directory.prepare();
   lock.take(directory);
   catch_interruptions();
-  SceneRun(options, std::move(start), directory, nullptr).run();
+  FrameLoop(options, std::move(start), directory, nullptr).run();
 }
 
 }  // namespace flowskin::tools

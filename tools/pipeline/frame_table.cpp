@@ -1,0 +1,27 @@
+#include "tools/pipeline/frame_table.h"
+
+namespace flowskin::tools {
+
+double FrameTable::since_last_row(const char* stage) {
+  const double total = clock_.seconds(stage);
+  return total - std::exchange(booked_[stage], total);
+}
+
+const FrameRow& FrameTable::add_frame(int frame, const scenes::ParticleSource& source, std::size_t particles,
+                                      const TrackedSurface* surface, const SurfaceFrame* shown) {
+  FrameRow row = clock_.time("statistics", [&] {
+    return statistics_.finish_frame(frame, source, surface ? &surface->tracker() : nullptr, shown);
+  });
+  row.overstretched = surface ? surface->textures().overstretched() : 0;
+  row.particles = particles;  // of blended states those that are written
+  row.seconds_source = since_last_row("source");
+  row.seconds_tracking = since_last_row("tracking");
+  row.seconds_writing = since_last_row("writing");
+  row.seconds_pictures = since_last_row("pictures");
+  row.seconds_statistics = since_last_row("statistics");
+  rows_.push_back(row);
+  write_frames_csv(file_, rows_);
+  return rows_.back();
+}
+
+}  // namespace flowskin::tools
