@@ -1,3 +1,3 @@
-#include "tools/commands/commands.h"
+#include "tools/commands/command_line.h"
 
 int main(int argc, char** argv) { return flowskin::tools::run_program(argc, argv); }

@@ -2,11 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "common/errors.h"
 #include "scenes/io/file_info.h"
 #include "scenes/scene_file.h"
-#include "tools/commands/commands.h"
+#include "tools/commands/command.h"
 #include "tools/pipeline/tracker_bridge.h"
 
 namespace flowskin::tools {
@@ -33,9 +34,7 @@ scenes::FileInfo describe_scene(const std::filesystem::path& file) {
   return info;
 }
 
-}  // namespace
-
-int info_command(const std::vector<std::filesystem::path>& files) {
+int describe_all(const std::vector<std::filesystem::path>& files) {
   bool sound = true;
   for (const auto& file : files) {
     const scenes::FileInfo info = file.extension() == ".json" ? describe_scene(file) : describe_file(file);
@@ -45,6 +44,16 @@ int info_command(const std::vector<std::filesystem::path>& files) {
   }
   if (!sound) throw InputError("not every file is sound; the lines above say what is wrong");
   return 0;
+}
+
+}  // namespace
+
+Command info_command() {
+  const auto files = std::make_shared<std::vector<std::filesystem::path>>();
+  return {"info",
+          "Say what is in a mesh, particle or scene file, and whether it is sound",
+          {{"files", files.get(), "OBJ, PLY, particle (CSV, VTK, VTP) or scene files", {.is_required = true}}},
+          [files](const std::string&) { return describe_all(*files); }};
 }
 
 }  // namespace flowskin::tools

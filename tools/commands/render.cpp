@@ -3,12 +3,13 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "common/errors.h"
 #include "scenes/io/frame_files.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/scene_file.h"
-#include "tools/commands/commands.h"
+#include "tools/commands/shared_options.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/pipeline/picture_maker.h"
 #include "tools/pipeline/tracker_bridge.h"
@@ -18,6 +19,18 @@
 namespace flowskin::tools {
 
 namespace {
+
+/// Overrides of the run's scene; unset values are those of the scene.
+struct RenderOptions {
+  std::filesystem::path directory;
+  int width = 0, height = 0, samples = 0;  ///< 0: as in the scene
+  std::vector<double> camera, look_at;     ///< 3 numbers each (m), or empty
+  double vertical_fov = 0;                 ///< degrees; 0: as in the scene
+  std::string style;                       ///< empty: as in the scene
+  std::string what = "both";               ///< surface, particles, both
+  int threads = 0;
+  bool no_video = false, quiet = false;
+};
 
 Vec3 vector_of(const std::vector<double>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
@@ -37,10 +50,7 @@ void override_settings(const RenderOptions& options, scenes::RenderSpec& render)
 class Redraw {
  public:
   Redraw(const RenderOptions& options, const scenes::Scene& scene, const RunDirectory& directory)
-      : options_(options),
-        scene_(scene),
-        directory_(directory),
-        rest_{scene.texture.rest_center, scene.texture.rest_size} {
+      : options_(options), scene_(scene), directory_(directory), rest_(rest_frame_of(scene.texture)) {
     if (options.what != "particles")
       surface_frames_ = RunDirectory::frames_in(directory.surface_folder(), "frame_", ".ply");
     if (options.what != "surface")
@@ -95,9 +105,7 @@ class Redraw {
   std::vector<int> surface_frames_, particle_frames_;
 };
 
-}  // namespace
-
-int render_command(const RenderOptions& options) {
+int render(const RenderOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   const RunDirectory directory(options.directory);
   directory.check_is_run();
@@ -106,11 +114,39 @@ int render_command(const RenderOptions& options) {
   catch_interruptions();
   Redraw(options, scene, directory).draw();
   make_contact_sheet(directory, scene.frame_rate);
-  if (options.video)
+  if (!options.no_video)
     make_videos(directory, scene.frame_rate, [&](const std::string& line) {
       if (!options.quiet) fmt::print(stderr, "{}\n", line);
     });
   return 0;
+}
+
+}  // namespace
+
+Command render_command() {
+  const auto chosen = std::make_shared<RenderOptions>();
+  const std::vector<Option> options{
+      {"directory", &chosen->directory, "Run directory", {.is_required = true}},
+      {"--width", &chosen->width, "Pixels (default: the scene's)", {.range = {{16, 16384}}}},
+      {"--height", &chosen->height, "Pixels (default: the scene's)", {.range = {{16, 16384}}}},
+      {"--samples", &chosen->samples, "Rays a pixel (default: the scene's)", {.range = {{1, 4096}}}},
+      {"--camera", &chosen->camera, "Camera position x y z (m)", {.count = 3}},
+      {"--look-at", &chosen->look_at, "Point the camera looks at, x y z (m)", {.count = 3}},
+      {"--fov", &chosen->vertical_fov, "Vertical field of view (degrees)", {.range = {{1.0, 170.0}}}},
+      {"--style",
+       &chosen->style,
+       "textured, solid, normals or confidence (default: the scene's)",
+       {.words = {"textured", "solid", "normals", "confidence"}}},
+      {"--what",
+       &chosen->what,
+       "surface, particles or both",
+       {.words = {"surface", "particles", "both"}, .shows_default = true}},
+      threads_option(chosen->threads, "Threads (default: all)"),
+      {"--no-video", &chosen->no_video, "Pictures but no videos"},
+      {"--quiet", &chosen->quiet, "No progress; warnings and errors only"},
+  };
+  return {"render", "Make the pictures and videos of a run again", options,
+          [chosen](const std::string&) { return render(*chosen); }};
 }
 
 }  // namespace flowskin::tools

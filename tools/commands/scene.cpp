@@ -1,20 +1,41 @@
 // flowskin scene: what a scene file may say.
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "scenes/scene_file.h"
-#include "tools/commands/commands.h"
+#include "tools/commands/command.h"
 
 namespace flowskin::tools {
 
-int scene_command(const std::string& what) {
-  if (what == "defaults") {
-    fmt::print("{}\n", scenes::write_scene(scenes::Scene{}));
-    return 0;
-  }
+namespace {
+
+void print_keys() {
   fmt::print("| Key | Type | Unit | Default | Meaning |\n|---|---|---|---|---|\n");
   for (const auto& key : scenes::scene_keys())
     fmt::print("| `{}` | {} | {} | `{}` | {} |\n", key.path, key.type, key.unit, key.default_value, key.meaning);
-  return 0;
+}
+
+}  // namespace
+
+Command scene_command() {
+  struct Chosen {
+    bool defaults = false, keys = false;
+  };
+  const auto chosen = std::make_shared<Chosen>();
+  const std::vector<Option> options{
+      {"--defaults", &chosen->defaults, "A scene with every key at its default, as JSON"},
+      {"--keys", &chosen->keys, "A table of all keys with unit, default and meaning (Markdown)"},
+  };
+  return {"scene", "Describe the scene file", options,
+          [chosen](const std::string&) {
+            if (chosen->defaults)
+              fmt::print("{}\n", scenes::write_scene(scenes::Scene{}));
+            else
+              print_keys();
+            return 0;
+          },
+          true};
 }
 
 }  // namespace flowskin::tools

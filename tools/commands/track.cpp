@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "common/errors.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/particle_sequence.h"
 #include "scenes/sources/particle_spacing.h"
-#include "tools/commands/commands.h"
+#include "tools/commands/shared_options.h"
 #include "tools/pipeline/picture_maker.h"
-#include "tools/pipeline/scene_run.h"
+#include "tools/pipeline/run_scene.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/render/camera.h"
 
@@ -21,6 +22,18 @@ namespace {
 namespace fs = std::filesystem;
 using scenes::ParticleSequence;
 using scenes::Vec3;
+
+/// What the user says; lengths in metres. Unset values are estimated or have defaults.
+struct TrackOptions {
+  std::vector<fs::path> particles;  ///< files, patterns, a folder, or one .pvd
+  std::optional<double> spacing, radius, edge_length, tile_size;
+  std::optional<double> frame_rate, time_step;  ///< files a second, s between files
+  bool no_ids = false;
+  std::string texture, mapping;  ///< empty: the scene file's defaults
+  std::string up = "y";          ///< or z
+  RunOptions run;                ///< without scene_file
+  PictureFlags pictures;
+};
 
 /// A radius in the files is believed where the spacing by it is within this factor of the distances found.
 constexpr double kLargestDisagreement = 2;
@@ -111,6 +124,16 @@ void set_pictures(const TrackOptions& options, const ParticleSequence& sequence,
   if (!places.empty()) scene.render.camera = place_camera(scene.render.camera, aspect, places);
 }
 
+/// The part of the scene that says which files are played, and how.
+scenes::RecordedSpec recorded_spec(const TrackOptions& options) {
+  scenes::RecordedSpec spec;
+  for (const fs::path& file : options.particles) spec.files.push_back(file.string());
+  if (options.time_step) spec.frame_interval = *options.time_step;
+  if (options.frame_rate) spec.frame_interval = 1 / *options.frame_rate;
+  if (options.no_ids) spec.ids = "none";
+  return spec;
+}
+
 scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) {
   scenes::Scene scene;
   scene.directory = fs::current_path().string();
@@ -134,18 +157,7 @@ scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) 
   return scene;
 }
 
-}  // namespace
-
-scenes::RecordedSpec recorded_spec(const TrackOptions& options) {
-  scenes::RecordedSpec spec;
-  for (const fs::path& file : options.particles) spec.files.push_back(file.string());
-  if (options.time_step) spec.frame_interval = *options.time_step;
-  if (options.frame_rate) spec.frame_interval = 1 / *options.frame_rate;
-  if (options.no_ids) spec.ids = "none";
-  return spec;
-}
-
-int track_command(const TrackOptions& options) {
+int track(const TrackOptions& options) {
   ParticleSequence sequence = scenes::open_sequence(recorded_spec(options), fs::current_path().string());
   for (const std::string& warning : sequence.warnings) warn(warning);
   say(options, fmt::format("{} files from {}, one every {:.6g} s", sequence.files.size(),
@@ -165,6 +177,73 @@ int track_command(const TrackOptions& options) {
                                 scene_vocabulary()),
             run);
   return 0;
+}
+
+std::vector<Option> files_options(TrackOptions& chosen) {
+  constexpr std::pair<double, double> lengths{1e-9, 1e6}, rates{1e-5, 1e5};
+  return {
+      {"particles",
+       &chosen.particles,
+       "Files, a pattern in quotes such as 'run/p_*.vtp' or p_%04d.ply, a folder, or one .pvd; columns x, y, z and, "
+       "where there are any, velocity, id, radius",
+       {.is_required = true}},
+      {"--out", &chosen.run.out, "Run directory (default: output/track_<name of the files>)"},
+      {"--spacing",
+       &chosen.spacing,
+       "Distance of neighbouring particles (m; default: from the radius in the files, else estimated)",
+       {.range = lengths}},
+      {"--radius",
+       &chosen.radius,
+       "Effective radius of a particle (m; default: 2.5 spacings); smaller shows more detail",
+       {.range = lengths}},
+      {"--edge-length", &chosen.edge_length, "Target edge of the mesh (m; default: 0.75 spacings)", {.range = lengths}},
+      {"--frame-rate",
+       &chosen.frame_rate,
+       "Files a second (default: the times in the files, else 30)",
+       {.range = rates}},
+      {"--time-step",
+       &chosen.time_step,
+       "The same as seconds between files",
+       {.range = rates, .excludes = "--frame-rate"}},
+      {"--frames", &chosen.run.frames, "Number of frames after the first (default: all)", {.range = {{1, 1000000}}}},
+      velocity_option(chosen.run.velocity, "auto"),
+      {"--no-ids", &chosen.no_ids, "Do not match particles from file to file, neither by id nor by order"},
+  };
+}
+
+std::vector<Option> looks_options(TrackOptions& chosen) {
+  return {
+      {"--texture", &chosen.texture, "checker, marble or an image file (default: checker)"},
+      {"--mapping",
+       &chosen.mapping,
+       "How the texture is put on: box, planar or spherical (default: box)",
+       {.words = {"box", "planar", "spherical"}}},
+      {"--tile-size",
+       &chosen.tile_size,
+       "Edge of one copy of the texture (m; default: by the fluid's size)",
+       {.range = {{1e-9, 1e6}}}},
+      {"--up", &chosen.up, "Axis that points up in the pictures", {.words = {"y", "z"}, .shows_default = true}},
+      threads_option(chosen.run.threads),
+      {"--resume", &chosen.run.resume,
+       "Go on from the last checkpoint in the run directory; more files may have come; see docs/restart.md"},
+      chosen.pictures.pictures_option(),
+      chosen.pictures.video_option(),
+      {"--quiet", &chosen.run.quiet, "No progress; warnings and errors only"},
+  };
+}
+
+}  // namespace
+
+Command track_command() {
+  const auto chosen = std::make_shared<TrackOptions>();
+  std::vector<Option> options = files_options(*chosen);
+  for (Option& option : looks_options(*chosen)) options.push_back(std::move(option));
+  return {"track", "Track a textured surface on recorded particles of any program: CSV, PLY, VTK, VTP (docs/track.md)",
+          options, [chosen](const std::string& command_line) {
+            chosen->run.command_line = command_line;
+            chosen->pictures.apply(chosen->run);
+            return track(*chosen);
+          }};
 }
 
 }  // namespace flowskin::tools
