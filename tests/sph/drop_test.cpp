@@ -17,7 +17,7 @@ TEST(Drop, OscillatesAtRayleighsFrequency) {
   const Oscillation seen = measure_oscillation(solver, frequency, 2.5);
   EXPECT_NEAR(seen.frequency / frequency, 1, 0.1);
   // Lamb's decay 5 nu / R^2: the numerical viscosity of so few particles adds to it.
-  const double decay = 5 * viscosity / (DropSetup::radius * DropSetup::radius);
+  const double decay = 5 * viscosity / (DropSetup::kRadius * DropSetup::kRadius);
   EXPECT_GT(seen.decay, 0.8 * decay);
   EXPECT_LT(seen.decay, 2.5 * decay);
 }
@@ -36,7 +36,7 @@ TEST(Drop, CubeBecomesRoundAndKeepsItsVolume) {
   EXPECT_NEAR(gyration_ball(state) / ball, 1, 0.02);
   // At rest the pressure is Laplace's; at five spacings a radius the tension acts noticeably inside the surface.
   EXPECT_LT(solver.energy().kinetic, 2e-5);
-  EXPECT_NEAR(core_pressure(solver) / (2 * DropSetup::tension / ball), 1.3, 0.2);
+  EXPECT_NEAR(core_pressure(solver) / (2 * DropSetup::kTension / ball), 1.3, 0.2);
 }
 
 TEST(Drop, MomentumIsKeptToRounding) {
@@ -108,7 +108,7 @@ SimulationSetup ceiling(double adhesion) {
   FluidBody body;
   body.shape = FluidBody::Shape::ball;
   body.center = {0, -0.04, 0};
-  body.radius = DropSetup::radius;
+  body.radius = DropSetup::kRadius;
   body.cuts.push_back({{-1, 0, -1}, {1, 1, 1}});
   setup.bodies.push_back(body);
   Boundary wall;
@@ -140,8 +140,8 @@ double contact_angle(double adhesion) {
   setup.settings.gravity = {0, -0.02, 0};
   FluidBody body;
   body.shape = FluidBody::Shape::ball;
-  body.center = {0, DropSetup::radius, 0};
-  body.radius = DropSetup::radius;
+  body.center = {0, DropSetup::kRadius, 0};
+  body.radius = DropSetup::kRadius;
   setup.bodies.push_back(body);
   Boundary wall;
   wall.mesh = sheet(0.4, 0);

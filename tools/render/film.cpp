@@ -12,7 +12,7 @@ Film::Film(int width, int height)
     : width_(width), height_(height), pixels_(std::size_t(width) * std::size_t(height)), more_(std::size_t(height)) {}
 
 bool Film::same_surface(const Sample& a, const Sample& b) {
-  return a.object == b.object && (a.object == no_object || (a.normal.dot(b.normal) > 0.9f &&
+  return a.object == b.object && (a.object == kNoObject || (a.normal.dot(b.normal) > 0.9f &&
                                                             std::abs(a.normal.dot(b.point - a.point)) < 3 * a.spacing));
 }
 

@@ -19,7 +19,7 @@ struct Sample {
   float spacing = 0;         ///< distance to the points of the neighbouring pixels there (m),
   std::uint32_t object = 0;  ///< and which surface it is; `no_object` for the backdrop.
 };
-inline constexpr std::uint32_t no_object = 0;
+inline constexpr std::uint32_t kNoObject = 0;
 
 /// Collects samples pixel by pixel and turns them into a picture.
 class Film {

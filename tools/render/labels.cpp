@@ -13,7 +13,7 @@ using Vec2 = Eigen::Vector2d;
 // A glyph is its character, its width (base 36) and strokes divided by spaces. A stroke's first character says how its
 // points are joined: - straight, ~ by a quadratic B-spline from the first to the last, o by a closed one. A point is
 // two digits of base 36: x, and y + 4; capitals reach from 4 (base line) to i, small letters to e, descenders to 0.
-constexpr std::string_view glyphs[] = {
+constexpr std::string_view kGlyphs[] = {
     "a8 o04848e0e -8e84",
     "b8 -0i04 o04848e0e",
     "c8 ~8c7e0e047486",
@@ -106,16 +106,16 @@ constexpr std::string_view glyphs[] = {
     "{3 ~3i0i0b0232",
     "}3 ~0i3i3b3202",
 };
-constexpr std::string_view unknown_glyph = "?8 -04848i0i04";
-constexpr double capital_height = 14, gap = 4.4, stroke_width = 1.9;
+constexpr std::string_view kUnknownGlyph = "?8 -04848i0i04";
+constexpr double kCapitalHeight = 14, kGap = 4.4, kStrokeWidth = 1.9;
 
 double digit(char c) { return c <= '9' ? c - '0' : c - 'a' + 10; }
 
 std::string_view glyph(char c) {
-  for (const std::string_view candidate : glyphs) {
+  for (const std::string_view candidate : kGlyphs) {
     if (candidate.front() == c) return candidate;
   }
-  return unknown_glyph;
+  return kUnknownGlyph;
 }
 
 // One glyph a character: the later bytes of a UTF-8 character are no characters.
@@ -195,14 +195,14 @@ class Mask {
 double text_width(const std::string& text, double height) {
   double width = 0;
   for (const char c : text) {
-    if (starts_character(c)) width += digit(glyph(c)[1]) + gap;
+    if (starts_character(c)) width += digit(glyph(c)[1]) + kGap;
   }
-  return std::max(0.0, width - gap) * height / capital_height;
+  return std::max(0.0, width - kGap) * height / kCapitalHeight;
 }
 
 void draw_text(Image& image, double x, double y, double height, const std::string& text, const Color& color,
                TextDirection direction) {
-  const double scale = height / capital_height, radius = 0.5 * stroke_width * scale;
+  const double scale = height / kCapitalHeight, radius = 0.5 * kStrokeWidth * scale;
   Mask mask(image.width, image.height);
   double pen = 0;
   const auto place = [&](const Vec2& point) -> Vec2 {
@@ -219,7 +219,7 @@ void draw_text(Image& image, double x, double y, double height, const std::strin
       if (line.size() == 1) mask.draw_segment(place(line[0]), place(line[0]), radius);
       for (std::size_t k = 0; k + 1 < line.size(); ++k) mask.draw_segment(place(line[k]), place(line[k + 1]), radius);
     }
-    pen += width + gap;
+    pen += width + kGap;
   }
   mask.blend(image, color);
 }

@@ -12,7 +12,7 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
+constexpr float kPi = std::numbers::pi_v<float>;
 
 float smooth_step(float from, float to, float value) {
   const float t = std::clamp((value - from) / (to - from), 0.0f, 1.0f);
@@ -31,7 +31,7 @@ Vec3f Lighting::sky(const Vec3f& direction) const {
 }
 
 Vec3f Lighting::open_irradiance(const Vec3f& normal) const {
-  const Vec3f sky_part = pi * (0.5f * backdrop(normal) + 0.5f * horizon);
+  const Vec3f sky_part = kPi * (0.5f * backdrop(normal) + 0.5f * horizon);
   return sky_part + std::max(0.0f, normal.dot(sun_direction)) * sun_irradiance;
 }
 
@@ -45,8 +45,8 @@ Lighting make_lighting(const scenes::RenderSpec& settings) {
   }
   Lighting lighting;
   lighting.sun_direction = (settings.light_direction / length).cast<float>();
-  lighting.sun_radius = float(settings.light_size) * pi / 360;
-  lighting.sun_irradiance = 1.05f * pi * Vec3f(1.0f, 0.95f, 0.86f);
+  lighting.sun_radius = float(settings.light_size) * kPi / 360;
+  lighting.sun_irradiance = 1.05f * kPi * Vec3f(1.0f, 0.95f, 0.86f);
   lighting.horizon = Vec3f(0.46f, 0.50f, 0.56f);
   lighting.zenith = Vec3f(0.17f, 0.23f, 0.34f);
   lighting.below = Vec3f(0.22f, 0.22f, 0.22f);
@@ -69,7 +69,7 @@ Vec3f environment(const Lighting& lighting, const Ground& ground, const Vec3f& o
   if (distance == std::numeric_limits<float>::infinity()) return lighting.sky(direction);
   const float fade = ground.fade(origin + distance * direction);
   // Half of the light: near an object the ground lies partly in its shadow.
-  const Vec3f reflected = 0.6f / pi * ground.reflectance.cwiseProduct(lighting.open_irradiance(Vec3f::UnitY()));
+  const Vec3f reflected = 0.6f / kPi * ground.reflectance.cwiseProduct(lighting.open_irradiance(Vec3f::UnitY()));
   return reflected + fade * (lighting.horizon - reflected);
 }
 

@@ -19,17 +19,17 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Which surface a sample lies on; walls follow from first_wall on.
-constexpr std::uint32_t ground_object = 1, subject_object = 2, first_wall = 3;
+constexpr std::uint32_t kGroundObject = 1, kSubjectObject = 2, kFirstWall = 3;
 
 // A sample of the scene without its subject: the same in every frame, so it is traced once and kept.
 struct StaticSample {
-  float distance = infinity;
+  float distance = kInfinity;
   std::array<std::int16_t, 3> normal{0, 0, 0};  // times 32767
-  std::uint16_t object = no_object;
+  std::uint16_t object = kNoObject;
   bool sees_sun = false;      // along this sample's direction
   std::uint8_t sees_sky = 0;  // a bit for each of its directions
 };
@@ -38,7 +38,7 @@ struct StaticSample {
 int sky_rays_for(int samples) { return samples <= 16 ? 2 : 1; }
 
 // Above this number of samples a picture (192 MB) they are traced again for each frame.
-constexpr std::size_t max_kept_samples = 16'000'000;
+constexpr std::size_t kMaxKeptSamples = 16'000'000;
 
 // The fluid's coat reflects as a dielectric with 4 % at normal incidence (C. Schlick 1994).
 float fresnel(float cosine) {
@@ -56,7 +56,7 @@ float highlight(const Vec3f& normal, const Vec3f& view, const Vec3f& light, floa
   const float n_h = std::max(normal.dot(half), 0.0f), d = n_h * n_h * (a2 - 1) + 1;
   const float lambda_v = n_l * std::sqrt(n_v * n_v * (1 - a2) + a2),
               lambda_l = n_v * std::sqrt(n_l * n_l * (1 - a2) + a2);
-  return fresnel(view.dot(half)) * a2 / (pi * d * d) * 0.5f / (lambda_v + lambda_l) * n_l;
+  return fresnel(view.dot(half)) * a2 / (kPi * d * d) * 0.5f / (lambda_v + lambda_l) * n_l;
 }
 
 void check_settings(const scenes::RenderSpec& settings) {
@@ -177,7 +177,7 @@ Renderer::Impl::Impl(const scenes::RenderSpec& spec, const std::vector<scenes::B
                   [](const auto& b) { return b.visible && b.boundary.motion.moves(); })) {
     moving_scene_ = boundaries;
   }
-  const int sets = interleaved_sets * spec.samples;
+  const int sets = kInterleavedSets * spec.samples;
   pixel_offsets_ = scrambled_sobol(spec.samples, 1);
   sun_directions_ = cone_directions(sets, 2, lighting_.sun_direction, lighting_.sun_radius);
   sky_directions_ = cosine_hemisphere(sets * sky_rays_, 3);
@@ -215,7 +215,7 @@ void Renderer::Impl::add_walls(const std::vector<scenes::BoundarySpec>& boundari
 void Renderer::Impl::keep_static_samples() {
   const std::size_t count =
       std::size_t(settings_.width) * std::size_t(settings_.height) * std::size_t(settings_.samples);
-  if (count > max_kept_samples) return;
+  if (count > kMaxKeptSamples) return;
   static_samples_.resize(count);
 #pragma omp parallel
   {
@@ -236,22 +236,22 @@ StaticSample Renderer::Impl::trace_static(int x, int y, int sample) const {
   StaticSample result;
   Vec3f normal = Vec3f::UnitY();
   result.distance = ground_.intersect(camera_.position(), ray);
-  if (result.distance < infinity) result.object = ground_object;
+  if (result.distance < kInfinity) result.object = kGroundObject;
   RayHit hit;
   // A floor drawn at the height of the ground hides it.
   if (walls_.intersect(camera_.position(), ray, 0, result.distance * 1.0001f, hit)) {
     result.distance = hit.distance;
-    result.object = std::uint16_t(std::min(first_wall + hit.geometry, 65535u));
+    result.object = std::uint16_t(std::min(kFirstWall + hit.geometry, 65535u));
     normal = hit.normal.dot(ray) > 0 ? Vec3f(-hit.normal) : hit.normal;  // walls have two sides
   }
-  if (result.object == no_object) return result;
+  if (result.object == kNoObject) return result;
   for (int i = 0; i < 3; ++i) result.normal[std::size_t(i)] = std::int16_t(std::lround(32767 * normal[i]));
   const Vec3f from = camera_.position() + result.distance * ray + step_off_ * normal;
   const std::size_t light = light_index(x, y, sample);
   const Vec3f& sun = sun_directions_[light];
-  result.sees_sun = normal.dot(sun) > 0 && !walls_.occluded(from, sun, 0, infinity);
+  result.sees_sun = normal.dot(sun) > 0 && !walls_.occluded(from, sun, 0, kInfinity);
   for (int k = 0; k < sky_rays_; ++k) {
-    const bool open = !walls_.occluded(from, sky_direction(normal, light, k), 0, infinity);
+    const bool open = !walls_.occluded(from, sky_direction(normal, light, k), 0, kInfinity);
     result.sees_sky = std::uint8_t(result.sees_sky | (open ? 1 << k : 0));
   }
   return result;
@@ -261,7 +261,7 @@ Sample Renderer::Impl::shade_static(const StaticSample& fixed, const Subject& su
                                     std::size_t light) const {
   Sample sample;
   sample.object = fixed.object;
-  if (fixed.object == no_object) {
+  if (fixed.object == kNoObject) {
     sample.extra = lighting_.backdrop(ray);
     return sample;
   }
@@ -269,22 +269,22 @@ Sample Renderer::Impl::shade_static(const StaticSample& fixed, const Subject& su
   sample.normal = Vec3f(fixed.normal[0], fixed.normal[1], fixed.normal[2]).normalized();
   sample.spacing = fixed.distance * std::sqrt(camera_.pixel_solid_angle());
   sample.reflectance =
-      fixed.object == ground_object ? ground_.reflectance : wall_reflectance_[fixed.object - first_wall];
-  if (fixed.object == ground_object) {
+      fixed.object == kGroundObject ? ground_.reflectance : wall_reflectance_[fixed.object - kFirstWall];
+  if (fixed.object == kGroundObject) {
     const float fade = ground_.fade(sample.point);
     sample.reflectance *= 1 - fade;
     sample.extra = fade * lighting_.backdrop(Vec3f(ray.x(), 0, ray.z()));
     if (fade >= 1) return sample;
   }
   const Vec3f from = sample.point + step_off_ * sample.normal;
-  const float sky_share = pi / float(sky_rays_);
+  const float sky_share = kPi / float(sky_rays_);
   const Vec3f& sun = sun_directions_[light];
-  if (fixed.sees_sun && !subject.scene().occluded(from, sun, 0, infinity)) {
+  if (fixed.sees_sun && !subject.scene().occluded(from, sun, 0, kInfinity)) {
     sample.irradiance = sample.normal.dot(sun) * lighting_.sun_irradiance;
   }
   for (int k = 0; k < sky_rays_; ++k) {
     const Vec3f sky = sky_direction(sample.normal, light, k);
-    const bool open = (fixed.sees_sky >> k & 1) != 0 && !subject.scene().occluded(from, sky, 0, infinity);
+    const bool open = (fixed.sees_sky >> k & 1) != 0 && !subject.scene().occluded(from, sky, 0, kInfinity);
     sample.irradiance += sky_share * (open ? environment(lighting_, ground_, from, sky) : blocked_radiance());
   }
   return sample;
@@ -293,7 +293,7 @@ Sample Renderer::Impl::shade_static(const StaticSample& fixed, const Subject& su
 Sample Renderer::Impl::shade_subject(const RayHit& hit, const Subject& subject, const Vec3f& ray,
                                      std::size_t light) const {
   Sample sample;
-  sample.object = subject_object;
+  sample.object = kSubjectObject;
   sample.point = camera_.position() + hit.distance * ray;
   const Vec3f facing = hit.normal.dot(ray) > 0 ? Vec3f(-hit.normal) : hit.normal;
   const float pixel_area = hit.distance * hit.distance * camera_.pixel_solid_angle();
@@ -307,9 +307,9 @@ Sample Renderer::Impl::shade_subject(const RayHit& hit, const Subject& subject, 
   sample.spacing = std::sqrt(pixel_area);
   const Vec3f from = sample.point + material.lift + step_off_ * facing;
   const auto blocked = [&](const Vec3f& direction) {
-    return subject.scene().occluded(from, direction, 0, infinity) || walls_.occluded(from, direction, 0, infinity);
+    return subject.scene().occluded(from, direction, 0, kInfinity) || walls_.occluded(from, direction, 0, kInfinity);
   };
-  const float sky_share = pi / float(sky_rays_);
+  const float sky_share = kPi / float(sky_rays_);
   const Vec3f& sun = sun_directions_[light];
   const float sun_cosine = sample.normal.dot(sun);
   const Vec3f view = -ray;
@@ -333,7 +333,7 @@ Sample Renderer::Impl::shade_subject(const RayHit& hit, const Subject& subject, 
 
 // Light that a wall or the ground gives back, its own shadows left out.
 Vec3f Renderer::Impl::wall_light(std::uint32_t object, const Vec3f& normal) const {
-  return 0.7f / pi * wall_reflectance_[object - first_wall].cwiseProduct(lighting_.open_irradiance(normal));
+  return 0.7f / kPi * wall_reflectance_[object - kFirstWall].cwiseProduct(lighting_.open_irradiance(normal));
 }
 
 Vec3f Renderer::Impl::reflection(const Subject& subject, const Vec3f& from, const Vec3f& ray) const {
@@ -342,11 +342,11 @@ Vec3f Renderer::Impl::reflection(const Subject& subject, const Vec3f& from, cons
   Vec3f light = environment(lighting_, ground_, from, ray);
   if (walls_.intersect(from, ray, 0, nearest, hit)) {
     nearest = hit.distance;
-    light = wall_light(first_wall + hit.geometry, hit.normal.dot(ray) > 0 ? Vec3f(-hit.normal) : hit.normal);
+    light = wall_light(kFirstWall + hit.geometry, hit.normal.dot(ray) > 0 ? Vec3f(-hit.normal) : hit.normal);
   }
   if (subject.scene().intersect(from, ray, 0, nearest, hit)) {
     const Material material = subject.material(hit, from + hit.distance * ray, 16 * hit.distance * step_off_);
-    light = 0.5f / pi * material.reflectance.cwiseProduct(lighting_.open_irradiance(material.normal));
+    light = 0.5f / kPi * material.reflectance.cwiseProduct(lighting_.open_irradiance(material.normal));
   }
   return light;
 }

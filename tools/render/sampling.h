@@ -37,6 +37,6 @@ inline int interleaved_set(int x, int y) {
   static constexpr int order[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
   return order[y & 3][x & 3];
 }
-inline constexpr int interleaved_sets = 16;
+inline constexpr int kInterleavedSets = 16;
 
 }  // namespace flowskin::tools

@@ -89,7 +89,7 @@ std::string input_pattern(const fs::path& pattern) {
 
 // H.264 with 4:2:0 colour needs even sizes: an odd last row or column is cut off. The colours are turned to those of HD
 // video, and the file says so; accurate rounding is the same on every machine.
-constexpr const char* picture_filter =
+constexpr const char* kPictureFilter =
     "crop=trunc(iw/2)*2:trunc(ih/2)*2:0:0,"
     "scale=flags=bicubic+accurate_rnd+full_chroma_int+bitexact:out_color_matrix=bt709:out_range=tv,format=yuv420p";
 
@@ -111,7 +111,7 @@ std::vector<std::string> ffmpeg_arguments(const fs::path& pattern, double frame_
           "-filter_threads",
           "1",
           "-vf",
-          picture_filter,
+          kPictureFilter,
           "-colorspace",
           "bt709",
           "-color_primaries",

@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double border = 12, gap = 18, sheet_title_size = 15;  // pixels
-constexpr int png_scale = 2;
+constexpr double kBorder = 12, kGap = 18, kSheetTitleSize = 15;  // pixels
+constexpr int kPngScale = 2;
 
 using Surface = std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)>;
 using Context = std::unique_ptr<cairo_t, void (*)(cairo_t*)>;
@@ -37,7 +37,7 @@ void check(const PlotSheet& sheet) {
 
 /// Where everything goes.
 struct SheetLayout {
-  double width = 0, height = 0, panels_top = border;
+  double width = 0, height = 0, panels_top = kBorder;
   int columns = 1;
   PlotLegend shared;  ///< Of all panels; empty: each has its own.
   bool bars = false;
@@ -48,17 +48,17 @@ SheetLayout lay_out(const PlotPen& pen, const PlotSheet& sheet) {
   const int count = static_cast<int>(sheet.plots.size());
   layout.columns = std::min(sheet.columns, count);
   const int rows = (count + layout.columns - 1) / layout.columns;
-  layout.width = 2 * border + layout.columns * sheet.panel_width + (layout.columns - 1) * gap;
+  layout.width = 2 * kBorder + layout.columns * sheet.panel_width + (layout.columns - 1) * kGap;
   layout.bars = !sheet.plots.front().categories.empty();
   const auto same = [&](const Plot& plot) {
     return legend_of(plot) == legend_of(sheet.plots.front()) && plot.categories.empty() != layout.bars;
   };
   if (count > 1 && std::all_of(sheet.plots.begin(), sheet.plots.end(), same))
     layout.shared = legend_of(sheet.plots.front());
-  if (!sheet.title.empty()) layout.panels_top += sheet_title_size + 12;
-  const double of_legend = legend_height(pen, layout.shared, layout.width - 2 * border, layout.bars);
+  if (!sheet.title.empty()) layout.panels_top += kSheetTitleSize + 12;
+  const double of_legend = legend_height(pen, layout.shared, layout.width - 2 * kBorder, layout.bars);
   layout.panels_top += of_legend > 0 ? of_legend + 8 : 0;
-  layout.height = layout.panels_top + rows * sheet.panel_height + (rows - 1) * gap + border;
+  layout.height = layout.panels_top + rows * sheet.panel_height + (rows - 1) * kGap + kBorder;
   return layout;
 }
 
@@ -67,17 +67,17 @@ void draw(cairo_t* context, const PlotSheet& sheet, const SheetLayout& layout) {
   const PlotPen pen(context);
   cairo_set_source_rgb(context, 1, 1, 1);
   cairo_paint(context);
-  pen.color(plot_ink);
-  double top = border;
+  pen.color(kPlotInk);
+  double top = kBorder;
   if (!sheet.title.empty()) {
-    pen.text(border + 2, top + sheet_title_size, sheet_title_size, sheet.title, Align::left, true);
-    top += sheet_title_size + 12;
+    pen.text(kBorder + 2, top + kSheetTitleSize, kSheetTitleSize, sheet.title, Align::left, true);
+    top += kSheetTitleSize + 12;
   }
-  draw_legend(pen, layout.shared, {border, top, layout.width - 2 * border, 0}, layout.bars);
+  draw_legend(pen, layout.shared, {kBorder, top, layout.width - 2 * kBorder, 0}, layout.bars);
   for (std::size_t i = 0; i < sheet.plots.size(); ++i) {
     const int column = static_cast<int>(i) % layout.columns, row = static_cast<int>(i) / layout.columns;
-    const PlotBox box{border + column * (sheet.panel_width + gap), layout.panels_top + row * (sheet.panel_height + gap),
-                      sheet.panel_width, sheet.panel_height};
+    const PlotBox box{kBorder + column * (sheet.panel_width + kGap),
+                      layout.panels_top + row * (sheet.panel_height + kGap), sheet.panel_width, sheet.panel_height};
     draw_panel(pen, sheet.plots[i], box, layout.shared.empty());
   }
 }
@@ -117,11 +117,11 @@ std::string svg_of(const PlotSheet& sheet, const SheetLayout& layout, const fs::
 
 std::string png_of(const PlotSheet& sheet, const SheetLayout& layout, const fs::path& file) {
   const Surface surface(
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(png_scale * layout.width)),
-                                 static_cast<int>(std::lround(png_scale * layout.height))),
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(kPngScale * layout.width)),
+                                 static_cast<int>(std::lround(kPngScale * layout.height))),
       &cairo_surface_destroy);
   const Context context(cairo_create(surface.get()), &cairo_destroy);
-  cairo_scale(context.get(), png_scale, png_scale);
+  cairo_scale(context.get(), kPngScale, kPngScale);
   draw(context.get(), sheet, layout);
   require(cairo_status(context.get()), file);
   std::string png;

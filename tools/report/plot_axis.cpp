@@ -10,10 +10,10 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr double from_zero_below = 0.5;  // share of the largest value: an axis whose values begin there shows zero
-constexpr double rounding = 1e-9;        // of a step
-constexpr int plain_low = -4, plain_high = 5;                 // exponents of numbers that are written out
-constexpr double plain_log_low = 1e-3, plain_log_high = 1e4;  // a logarithmic axis within these has no powers of ten
+constexpr double kFromZeroBelow = 0.5;  // share of the largest value: an axis whose values begin there shows zero
+constexpr double kRounding = 1e-9;      // of a step
+constexpr int kPlainLow = -4, kPlainHigh = 5;               // exponents of numbers that are written out
+constexpr double kPlainLogLow = 1e-3, kPlainLogHigh = 1e4;  // a logarithmic axis within these has no powers of ten
 
 std::string superscript(int number) {
   static const char* const digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -22,13 +22,13 @@ std::string superscript(int number) {
   return text;
 }
 
-int exponent_of(double value) { return static_cast<int>(std::floor(std::log10(value) + rounding)); }
+int exponent_of(double value) { return static_cast<int>(std::floor(std::log10(value) + kRounding)); }
 
 /// 1, 2 or 5 times a power of ten: the smallest such number that is at least `value`.
 double round_up(double value) {
   const double power = std::pow(10.0, exponent_of(value));
   for (const double digit : {1.0, 2.0, 5.0}) {
-    if (digit * power >= value * (1 - rounding)) return digit * power;
+    if (digit * power >= value * (1 - kRounding)) return digit * power;
   }
   return 10 * power;
 }
@@ -36,7 +36,7 @@ double round_up(double value) {
 double round_down(double value) {
   const double power = std::pow(10.0, exponent_of(value));
   for (const double digit : {5.0, 2.0}) {
-    if (digit * power <= value * (1 + rounding)) return digit * power;
+    if (digit * power <= value * (1 + kRounding)) return digit * power;
   }
   return power;
 }
@@ -54,11 +54,11 @@ void add_linear_ticks(Axis& axis, int most_labels) {
   double step = round_up((axis.high - axis.low) / most_labels);
   const double largest = std::max(std::abs(axis.low), std::abs(axis.high));
   int power = exponent_of(largest);
-  if (power > plain_low && power < plain_high) power = 0;
+  if (power > kPlainLow && power < kPlainHigh) power = 0;
   if (power != 0) axis.factor = "×10" + superscript(power);
   const double unit = std::pow(10.0, power);
   const int decimals = std::max(0, power - exponent_of(step));
-  const double first = std::ceil(axis.low / step - rounding), last = std::floor(axis.high / step + rounding);
+  const double first = std::ceil(axis.low / step - kRounding), last = std::floor(axis.high / step + kRounding);
   for (double k = first; k <= last; ++k) {
     axis.ticks.push_back({k * step, signed_text(fmt::format("{:.{}f}", k * step / unit, decimals))});
   }
@@ -75,12 +75,12 @@ void add_log_ticks(Axis& axis, int most_labels) {
   const int first = exponent_of(axis.low), last = exponent_of(axis.high);
   const double decades = std::log10(axis.high / axis.low);
   const bool label_digits = 3 * decades <= most_labels;
-  const bool plain = axis.low >= plain_log_low * (1 - rounding) && axis.high <= plain_log_high * (1 + rounding);
+  const bool plain = axis.low >= kPlainLogLow * (1 - kRounding) && axis.high <= kPlainLogHigh * (1 + kRounding);
   const int every = std::max(1, static_cast<int>(std::ceil(decades / most_labels)));
   for (int exponent = first; exponent <= last; ++exponent) {
     for (int digit = 1; digit <= 9; ++digit) {
       const double value = digit * std::pow(10.0, exponent);
-      if (value < axis.low * (1 - rounding) || value > axis.high * (1 + rounding)) continue;
+      if (value < axis.low * (1 - kRounding) || value > axis.high * (1 + kRounding)) continue;
       const bool whole = digit == 1 && exponent % every == 0;
       const bool part = label_digits && (digit == 1 || digit == 2 || digit == 5);
       if (whole || part) {
@@ -137,8 +137,8 @@ Axis make_axis(const std::vector<double>& values, const AxisWishes& wishes) {
     const double half = low == 0 ? 1 : 0.5 * std::abs(low);
     return make_axis(low - half, high + half, wishes);
   }
-  const bool zero_low = wishes.near_zero_from_zero && low >= 0 && low <= from_zero_below * high;
-  const bool zero_high = wishes.near_zero_from_zero && high <= 0 && high >= from_zero_below * low;
+  const bool zero_low = wishes.near_zero_from_zero && low >= 0 && low <= kFromZeroBelow * high;
+  const bool zero_high = wishes.near_zero_from_zero && high <= 0 && high >= kFromZeroBelow * low;
   const double margin = wishes.margin * (high - low);
   return make_axis(zero_low ? 0 : low - margin, zero_high ? 0 : high + margin, wishes);
 }

@@ -11,14 +11,14 @@ namespace flowskin::tools {
 namespace {
 
 // Pixels.
-constexpr double title_size = 13, label_size = 11.5, tick_size = 10.5, note_size = 9.5;
-constexpr double legend_row = 18, line_sample = 30, bar_sample = 11, legend_gap = 16;
-constexpr double room_above_bars = 1.3;  // factor, for their numbers on a logarithmic axis
-constexpr double tick_gap = 5;
-constexpr double pixels_a_label_x = 62, pixels_a_label_y = 28;
+constexpr double kTitleSize = 13, kLabelSize = 11.5, kTickSize = 10.5, kNoteSize = 9.5;
+constexpr double kLegendRow = 18, kLineSample = 30, kBarSample = 11, kLegendGap = 16;
+constexpr double kRoomAboveBars = 1.3;  // factor, for their numbers on a logarithmic axis
+constexpr double kTickGap = 5;
+constexpr double kPixelsALabelX = 62, kPixelsALabelY = 28;
 
-constexpr std::size_t all_marked = 15;  // points: with more of them only some are marked
-constexpr std::size_t marks = 8;
+constexpr std::size_t kAllMarked = 15;  // points: with more of them only some are marked
+constexpr std::size_t kMarks = 8;
 
 int style_of(const Plot& plot, std::size_t index) {
   return plot.series[index].style >= 0 ? plot.series[index].style : static_cast<int>(index);
@@ -55,25 +55,25 @@ class Panel {
 
 Panel::Panel(const PlotPen& pen, const Plot& plot, const PlotBox& box, bool with_legend)
     : pen_(pen), plot_(plot), box_(box), area_(box), legend_(with_legend ? legend_of(plot) : PlotLegend{}) {
-  area_.y += plot_.title.empty() ? 8 : title_size + 10;
+  area_.y += plot_.title.empty() ? 8 : kTitleSize + 10;
   if (!legend_.empty()) area_.y += legend_height(pen_, legend_, box_.width, bars()) + 6;
   y_axis_.log = plot_.log_y;
   x_axis_.log = plot_.log_x && !bars();
   count_left_out();
-  double bottom = tick_size + tick_gap + 6;
-  if (!plot_.x_label.empty()) bottom += label_size + 6;
-  bottom += double(notes().size()) * (note_size + 4);
+  double bottom = kTickSize + kTickGap + 6;
+  if (!plot_.x_label.empty()) bottom += kLabelSize + 6;
+  bottom += double(notes().size()) * (kNoteSize + 4);
   area_.height = box_.y + box_.height - bottom - area_.y;
   y_axis_ = make_y_axis();
   if (!y_axis_.factor.empty()) {
-    area_.y += tick_size + 2;
-    area_.height -= tick_size + 2;
+    area_.y += kTickSize + 2;
+    area_.height -= kTickSize + 2;
   }
   double widest = 0;
-  for (const Tick& tick : y_axis_.ticks) widest = std::max(widest, pen_.text_width(tick.label, tick_size));
-  area_.x = box_.x + widest + tick_gap + (plot_.y_label.empty() ? 4 : label_size + 10);
+  for (const Tick& tick : y_axis_.ticks) widest = std::max(widest, pen_.text_width(tick.label, kTickSize));
+  area_.x = box_.x + widest + kTickGap + (plot_.y_label.empty() ? 4 : kLabelSize + 10);
   area_.width = box_.x + box_.width - 14 - area_.x;
-  const int labels = static_cast<int>(area_.width / pixels_a_label_x);
+  const int labels = static_cast<int>(area_.width / kPixelsALabelX);
   x_axis_ = bars() ? Axis{false, -0.5, double(plot_.categories.size()) - 0.5, {}, {}}
                    : make_axis(values_x(), {plot_.log_x, true, 0.02, labels});
 }
@@ -110,12 +110,12 @@ std::vector<double> Panel::values_y() const {
       if (bars() || x_axis_.takes(series.x[i])) values.push_back(series.y[i]);
   if (bars() && !plot_.log_y) values.push_back(0);
   if (bars() && plot_.log_y && !values.empty())
-    values.push_back(room_above_bars * *std::max_element(values.begin(), values.end()));
+    values.push_back(kRoomAboveBars * *std::max_element(values.begin(), values.end()));
   return values;
 }
 
 Axis Panel::make_y_axis() const {
-  const AxisWishes wishes{plot_.log_y, true, 0.06, static_cast<int>(area_.height / pixels_a_label_y)};
+  const AxisWishes wishes{plot_.log_y, true, 0.06, static_cast<int>(area_.height / kPixelsALabelY)};
   const Axis automatic = make_axis(values_y(), wishes);
   const double low = y_axis_.takes(plot_.y_low) ? plot_.y_low : automatic.low;
   const double high = y_axis_.takes(plot_.y_high) ? plot_.y_high : automatic.high;
@@ -139,23 +139,23 @@ void Panel::draw_axes() const {
   cairo_set_dash(pen_.context(), nullptr, 0, 0);
   for (const Tick& tick : y_axis_.ticks) {
     const double y = y_at(tick.value);
-    pen_.color(plot_grid);
+    pen_.color(kPlotGrid);
     if (!tick.label.empty()) pen_.line(area_.x, y, right, y, 1);
-    pen_.color(plot_pale_ink);
+    pen_.color(kPlotPaleInk);
     if (tick.label.empty()) pen_.line(area_.x - 2, y, area_.x, y, 0.8);
-    pen_.text(area_.x - tick_gap, y + 0.36 * tick_size, tick_size, tick.label, Align::right);
+    pen_.text(area_.x - kTickGap, y + 0.36 * kTickSize, kTickSize, tick.label, Align::right);
   }
   for (const Tick& tick : x_axis_.ticks) {
     const double x = x_at(tick.value);
-    pen_.color(plot_grid);
+    pen_.color(kPlotGrid);
     if (!tick.label.empty()) pen_.line(x, area_.y, x, bottom, 1);
-    pen_.color(plot_pale_ink);
+    pen_.color(kPlotPaleInk);
     pen_.line(x, bottom, x, bottom + (tick.label.empty() ? 2 : 4), 0.8);
-    pen_.text(x, bottom + tick_gap + tick_size, tick_size, tick.label, Align::center);
+    pen_.text(x, bottom + kTickGap + kTickSize, kTickSize, tick.label, Align::center);
   }
-  pen_.color(plot_pale_ink);
+  pen_.color(kPlotPaleInk);
   for (std::size_t i = 0; i < plot_.categories.size(); ++i)
-    pen_.text(x_at(double(i)), bottom + tick_gap + tick_size, tick_size, plot_.categories[i], Align::center);
+    pen_.text(x_at(double(i)), bottom + kTickGap + kTickSize, kTickSize, plot_.categories[i], Align::center);
   pen_.line(area_.x, bottom, right, bottom, 1);
   pen_.line(area_.x, area_.y, area_.x, bottom, 1);
   if (bars() && y_axis_.takes(0) && y_axis_.low < 0) pen_.line(area_.x, y_at(0), right, y_at(0), 1);
@@ -163,17 +163,17 @@ void Panel::draw_axes() const {
 
 void Panel::draw_texts() const {
   const double bottom = area_.y + area_.height, middle = area_.x + 0.5 * area_.width;
-  pen_.color(plot_ink);
-  pen_.text(box_.x + 2, box_.y + title_size, title_size, plot_.title, Align::left, true);
-  pen_.text_upwards(box_.x + label_size, area_.y + 0.5 * area_.height, label_size, plot_.y_label);
-  double y = bottom + tick_gap + tick_size;
-  if (!plot_.x_label.empty()) pen_.text(middle, y += label_size + 6, label_size, plot_.x_label, Align::center);
-  pen_.color(plot_pale_ink);
-  if (!y_axis_.factor.empty()) pen_.text(area_.x, area_.y - 4, tick_size, y_axis_.factor, Align::left);
+  pen_.color(kPlotInk);
+  pen_.text(box_.x + 2, box_.y + kTitleSize, kTitleSize, plot_.title, Align::left, true);
+  pen_.text_upwards(box_.x + kLabelSize, area_.y + 0.5 * area_.height, kLabelSize, plot_.y_label);
+  double y = bottom + kTickGap + kTickSize;
+  if (!plot_.x_label.empty()) pen_.text(middle, y += kLabelSize + 6, kLabelSize, plot_.x_label, Align::center);
+  pen_.color(kPlotPaleInk);
+  if (!y_axis_.factor.empty()) pen_.text(area_.x, area_.y - 4, kTickSize, y_axis_.factor, Align::left);
   if (!x_axis_.factor.empty())
-    pen_.text(area_.x + area_.width, bottom + 2 * tick_size + tick_gap + 4, tick_size, x_axis_.factor, Align::right);
-  for (const std::string& note : notes()) pen_.text(area_.x, y += note_size + 4, note_size, note, Align::left);
-  if (drawn_ == 0) pen_.text(middle, area_.y + 0.5 * area_.height, label_size, "no values to show", Align::center);
+    pen_.text(area_.x + area_.width, bottom + 2 * kTickSize + kTickGap + 4, kTickSize, x_axis_.factor, Align::right);
+  for (const std::string& note : notes()) pen_.text(area_.x, y += kNoteSize + 4, kNoteSize, note, Align::left);
+  if (drawn_ == 0) pen_.text(middle, area_.y + 0.5 * area_.height, kLabelSize, "no values to show", Align::center);
 }
 
 void Panel::draw_line(std::size_t index) const {
@@ -200,7 +200,7 @@ void Panel::draw_line(std::size_t index) const {
 void Panel::draw_marks(std::size_t index) const {
   const Series& series = plot_.series[index];
   const std::size_t count = series.y.size();
-  const std::size_t every = count > all_marked ? count / marks : 1;
+  const std::size_t every = count > kAllMarked ? count / kMarks : 1;
   const std::size_t first = index * every / std::max<std::size_t>(1, plot_.series.size());
   const auto shown = [&](std::size_t i) {
     return i < count && x_axis_.takes(series.x[i]) && y_axis_.takes(series.y[i]);
@@ -227,9 +227,9 @@ void Panel::draw_bars(std::size_t index) const {
     cairo_rectangle(pen_.context(), left + 0.5, std::min(top, base), std::max(1.0, width - 1), std::abs(base - top));
     cairo_fill(pen_.context());
     const std::string text = fmt::format("{:.2g}", series.y[i]);
-    if (pen_.text_width(text, note_size) > width + 2) continue;
-    pen_.color(plot_pale_ink);
-    pen_.text(left + 0.5 * width, top < base ? top - 3 : top + note_size + 2, note_size, text, Align::center);
+    if (pen_.text_width(text, kNoteSize) > width + 2) continue;
+    pen_.color(kPlotPaleInk);
+    pen_.text(left + 0.5 * width, top < base ? top - 3 : top + kNoteSize + 2, kNoteSize, text, Align::center);
   }
 }
 
@@ -248,11 +248,11 @@ void Panel::draw() const {
   cairo_restore(pen_.context());
   for (std::size_t i = 0; !bars() && i < plot_.series.size(); ++i) draw_marks(i);
   draw_texts();
-  const double top = box_.y + (plot_.title.empty() ? 4 : title_size + 6);
+  const double top = box_.y + (plot_.title.empty() ? 4 : kTitleSize + 6);
   draw_legend(pen_, legend_, {box_.x, top, box_.width, 0}, bars());
 }
 
-double sample_width(bool bars) { return bars ? bar_sample : line_sample; }
+double sample_width(bool bars) { return bars ? kBarSample : kLineSample; }
 
 /// Calls place(entry, x, row) for each entry. @return the number of rows
 template <class Place>
@@ -260,13 +260,13 @@ int lay_out_legend(const PlotPen& pen, const PlotLegend& legend, double width, d
   double x = 0;
   int row = 0;
   for (const auto& entry : legend) {
-    const double needed = sample + 6 + pen.text_width(entry.first, tick_size);
+    const double needed = sample + 6 + pen.text_width(entry.first, kTickSize);
     if (x > 0 && x + needed > width) {
       x = 0;
       ++row;
     }
     place(entry, x, row);
-    x += needed + legend_gap;
+    x += needed + kLegendGap;
   }
   return legend.empty() ? 0 : row + 1;
 }
@@ -282,13 +282,13 @@ PlotLegend legend_of(const Plot& plot) {
 }
 
 double legend_height(const PlotPen& pen, const PlotLegend& legend, double width, bool bars) {
-  return legend_row * lay_out_legend(pen, legend, width, sample_width(bars), [](const auto&, double, int) {});
+  return kLegendRow * lay_out_legend(pen, legend, width, sample_width(bars), [](const auto&, double, int) {});
 }
 
 void draw_legend(const PlotPen& pen, const PlotLegend& legend, const PlotBox& box, bool bars) {
   const double sample = sample_width(bars);
   lay_out_legend(pen, legend, box.width, sample, [&](const auto& entry, double at, int row) {
-    const double x = box.x + 2 + at, y = box.y + legend_row * (row + 0.5);
+    const double x = box.x + 2 + at, y = box.y + kLegendRow * (row + 0.5);
     if (bars) {
       pen.color(style_color(entry.second));
       cairo_rectangle(pen.context(), x, y - 0.5 * sample, sample, sample);
@@ -300,8 +300,8 @@ void draw_legend(const PlotPen& pen, const PlotLegend& legend, const PlotBox& bo
       cairo_stroke(pen.context());
       draw_marker(pen, entry.second, x + 0.5 * sample, y);
     }
-    pen.color(plot_ink);
-    pen.text(x + sample + 6, y + 0.36 * tick_size, tick_size, entry.first, Align::left);
+    pen.color(kPlotInk);
+    pen.text(x + sample + 6, y + 0.36 * kTickSize, kTickSize, entry.first, Align::left);
   });
 }
 

@@ -8,21 +8,21 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr const char* font_name = "DejaVu Sans";
-constexpr double line_width = 1.8;
+constexpr const char* kFontName = "DejaVu Sans";
+constexpr double kLineWidth = 1.8;
 
 // Okabe and Ito's palette; its yellow, which white paper swallows, is replaced by grey.
-constexpr std::array<PlotColor, 8> palette{{{0.000, 0.447, 0.698},
-                                            {0.835, 0.369, 0.000},
-                                            {0.000, 0.620, 0.451},
-                                            {0.800, 0.475, 0.655},
-                                            {0.902, 0.624, 0.000},
-                                            {0.337, 0.706, 0.914},
-                                            {0.000, 0.000, 0.000},
-                                            {0.550, 0.550, 0.550}}};
+constexpr std::array<PlotColor, 8> kPalette{{{0.000, 0.447, 0.698},
+                                             {0.835, 0.369, 0.000},
+                                             {0.000, 0.620, 0.451},
+                                             {0.800, 0.475, 0.655},
+                                             {0.902, 0.624, 0.000},
+                                             {0.337, 0.706, 0.914},
+                                             {0.000, 0.000, 0.000},
+                                             {0.550, 0.550, 0.550}}};
 
 // In line widths: drawn, left out, drawn, ...
-const std::array<std::vector<double>, 4> dashes{{{}, {5, 2}, {1.5, 1.5}, {6, 1.5, 1.5, 1.5}}};
+const std::array<std::vector<double>, 4> kDashes{{{}, {5, 2}, {1.5, 1.5}, {6, 1.5, 1.5, 1.5}}};
 
 std::size_t in_turn(int style, std::size_t count) { return static_cast<std::size_t>(style) % count; }
 
@@ -52,7 +52,7 @@ void PlotPen::color(const PlotColor& color, double alpha) const {
 }
 
 void PlotPen::font(double size, bool bold) const {
-  cairo_select_font_face(context_, font_name, CAIRO_FONT_SLANT_NORMAL,
+  cairo_select_font_face(context_, kFontName, CAIRO_FONT_SLANT_NORMAL,
                          bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(context_, size);
 }
@@ -86,20 +86,20 @@ void PlotPen::line(double x0, double y0, double x1, double y1, double width) con
   cairo_stroke(context_);
 }
 
-PlotColor style_color(int style) { return palette[in_turn(style, palette.size())]; }
+PlotColor style_color(int style) { return kPalette[in_turn(style, kPalette.size())]; }
 
 void use_line_style(const PlotPen& pen, int style) {
   pen.color(style_color(style));
-  std::vector<double> pattern = dashes[in_turn(style, dashes.size())];
-  for (double& length : pattern) length *= line_width;
+  std::vector<double> pattern = kDashes[in_turn(style, kDashes.size())];
+  for (double& length : pattern) length *= kLineWidth;
   cairo_set_dash(pen.context(), pattern.data(), static_cast<int>(pattern.size()), 0);
-  cairo_set_line_width(pen.context(), line_width);
+  cairo_set_line_width(pen.context(), kLineWidth);
   cairo_set_line_join(pen.context(), CAIRO_LINE_JOIN_ROUND);
 }
 
 void draw_marker(const PlotPen& pen, int style, double x, double y) {
   cairo_t* context = pen.context();
-  constexpr double r = plot_marker_size;
+  constexpr double r = kPlotMarkerSize;
   constexpr double quarter = 0.25 * std::numbers::pi;
   cairo_new_path(context);
   switch (in_turn(style, 8)) {

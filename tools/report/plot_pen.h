@@ -9,7 +9,7 @@
 namespace flowskin::tools {
 
 using PlotColor = std::array<double, 3>;
-constexpr PlotColor plot_ink{0.13, 0.14, 0.16}, plot_pale_ink{0.42, 0.44, 0.47}, plot_grid{0.89, 0.90, 0.91};
+constexpr PlotColor kPlotInk{0.13, 0.14, 0.16}, kPlotPaleInk{0.42, 0.44, 0.47}, kPlotGrid{0.89, 0.90, 0.91};
 
 enum class Align { left, center, right };
 
@@ -32,7 +32,7 @@ class PlotPen {
   cairo_t* context_;
 };
 
-constexpr double plot_marker_size = 3.2;
+constexpr double kPlotMarkerSize = 3.2;
 
 /// Colour of a style, colour-blind safe [Okabe and Ito 2008].
 PlotColor style_color(int style);

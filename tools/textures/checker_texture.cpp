@@ -10,11 +10,11 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr int cells = 8;
-constexpr float label_height = 0.40F;  ///< in cells
-constexpr float label_gap = 0.16F;     ///< between the two characters, in cells
-constexpr float pen_radius = 0.049F;   ///< in cells
-constexpr float line_width = 0.014F;   ///< half the width of the grid's lines, in cells
+constexpr int kCells = 8;
+constexpr float kLabelHeight = 0.40F;  ///< in cells
+constexpr float kLabelGap = 0.16F;     ///< between the two characters, in cells
+constexpr float kPenRadius = 0.049F;   ///< in cells
+constexpr float kLineWidth = 0.014F;   ///< half the width of the grid's lines, in cells
 
 struct CellStyle {
   Vec3 fill, label;  ///< linear light
@@ -23,10 +23,10 @@ struct CellStyle {
 /// Hue runs once round the circle along u, rows alternate by half a cell's hue, and colours are strongest in the middle
 /// of the tile: so the grid goes on across its edges, and no two cells are alike.
 CellStyle cell_style(int column, int row) {
-  const double hue = (column + 0.5) / cells + (row % 2) * 0.5 / cells + 0.02;
+  const double hue = (column + 0.5) / kCells + (row % 2) * 0.5 / kCells + 0.02;
   const bool is_light = (column + row) % 2 == 0;
   const double up =
-      0.5 - 0.5 * std::cos(2 * std::numbers::pi * (row + 0.5) / cells);  // 0 at the tile's edge, 1 in its middle
+      0.5 - 0.5 * std::cos(2 * std::numbers::pi * (row + 0.5) / kCells);  // 0 at the tile's edge, 1 in its middle
   if (is_light) return {linear_from_oklch(0.90 - 0.05 * up, 0.05 + 0.05 * up, hue), linear_from_oklch(0.42, 0.10, hue)};
   return {linear_from_oklch(0.64 - 0.10 * up, 0.14, hue), linear_from_oklch(0.96, 0.02, hue)};
 }
@@ -38,18 +38,18 @@ struct Label {
 
   Label(int column, int row)
       : first(stroke_glyph(static_cast<char>('A' + row))), second(stroke_glyph(static_cast<char>('1' + column))) {
-    const float width = (first.width + second.width) * label_height + label_gap;
-    first_corner = Vec2f(0.5F - width / 2, 0.5F - label_height / 2);
-    second_corner = first_corner + Vec2f(first.width * label_height + label_gap, 0);
+    const float width = (first.width + second.width) * kLabelHeight + kLabelGap;
+    first_corner = Vec2f(0.5F - width / 2, 0.5F - kLabelHeight / 2);
+    second_corner = first_corner + Vec2f(first.width * kLabelHeight + kLabelGap, 0);
   }
 
   /// Distance to the nearest stroke, in cells; a large number where no pen can reach.
   float distance(const Vec2f& point) const {
     const Vec2f from_middle = (point - Vec2f(0.5F, 0.5F)).cwiseAbs();
-    if (from_middle.y() > label_height / 2 + 2 * pen_radius || from_middle.x() > label_height + 2 * pen_radius)
+    if (from_middle.y() > kLabelHeight / 2 + 2 * kPenRadius || from_middle.x() > kLabelHeight + 2 * kPenRadius)
       return 1;
-    return label_height * std::min(first.distance((point - first_corner) / label_height),
-                                   second.distance((point - second_corner) / label_height));
+    return kLabelHeight * std::min(first.distance((point - first_corner) / kLabelHeight),
+                                   second.distance((point - second_corner) / kLabelHeight));
   }
 };
 
@@ -64,24 +64,24 @@ Image checker_texture(int size) {
   Image image{size, size, std::vector<Color>(static_cast<std::size_t>(size) * static_cast<std::size_t>(size))};
   std::vector<Label> labels;
   std::vector<CellStyle> styles;
-  for (int i = 0; i < cells * cells; ++i) {
-    labels.emplace_back(i % cells, i / cells);
-    styles.push_back(cell_style(i % cells, i / cells));
+  for (int i = 0; i < kCells * kCells; ++i) {
+    labels.emplace_back(i % kCells, i / kCells);
+    styles.push_back(cell_style(i % kCells, i / kCells));
   }
-  const float pixel = static_cast<float>(cells) / static_cast<float>(size);
+  const float pixel = static_cast<float>(kCells) / static_cast<float>(size);
   const Vec3 line = linear_from_oklch(0.98, 0.0, 0);
 #pragma omp parallel for schedule(static)
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
       // v points up, the rows of an image go down.
       const Vec2f place = pixel * Vec2f(static_cast<float>(x) + 0.5F, static_cast<float>(size - 1 - y) + 0.5F);
-      const int column = std::min(static_cast<int>(place.x()), cells - 1),
-                row = std::min(static_cast<int>(place.y()), cells - 1);
+      const int column = std::min(static_cast<int>(place.x()), kCells - 1),
+                row = std::min(static_cast<int>(place.y()), kCells - 1);
       const Vec2f inside = place - Vec2f(static_cast<float>(column), static_cast<float>(row));
-      const CellStyle& style = styles[row * cells + column];
+      const CellStyle& style = styles[row * kCells + column];
       const float edge = std::min({inside.x(), 1 - inside.x(), inside.y(), 1 - inside.y()});
-      const double on_line = coverage(edge, line_width, pixel);
-      const double on_label = coverage(labels[row * cells + column].distance(inside), pen_radius, pixel);
+      const double on_line = coverage(edge, kLineWidth, pixel);
+      const double on_label = coverage(labels[row * kCells + column].distance(inside), kPenRadius, pixel);
       const Vec3 labelled = (1 - on_label) * style.fill + on_label * style.label;
       image.at(x, y) = encode_srgb((1 - on_line) * labelled + on_line * line);
     }

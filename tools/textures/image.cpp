@@ -25,8 +25,8 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr int largest_edge = 16384;  ///< pixels; the largest that graphics hardware takes
-constexpr int default_texture_size = 1024;
+constexpr int kLargestEdge = 16384;  ///< pixels; the largest that graphics hardware takes
+constexpr int kDefaultTextureSize = 1024;
 
 void append(void* text, void* data, int size) {
   static_cast<std::string*>(text)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
@@ -43,9 +43,9 @@ Image read_image(const std::filesystem::path& file) {
   int width = 0, height = 0, channels = 0;
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
     throw InputError(name + ": no image that can be read (expected PNG, JPEG, BMP or TGA)");
-  if (width < 1 || height < 1 || width > largest_edge || height > largest_edge)
+  if (width < 1 || height < 1 || width > kLargestEdge || height > kLargestEdge)
     throw InputError(name + ": " + std::to_string(width) + " x " + std::to_string(height) + " pixels; at most " +
-                     std::to_string(largest_edge) + " are possible in each direction");
+                     std::to_string(kLargestEdge) + " are possible in each direction");
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, size, &width, &height, &channels, 4), &stbi_image_free);
   if (!pixels) throw InputError(name + ": the image is damaged (" + stbi_failure_reason() + ")");
@@ -74,8 +74,8 @@ void write_png(const std::filesystem::path& file, const Image& image) {
 }
 
 Image make_texture(const std::string& name, const std::filesystem::path& directory) {
-  if (name == "checker") return checker_texture(default_texture_size);
-  if (name == "marble") return marble_texture(default_texture_size, 1);
+  if (name == "checker") return checker_texture(kDefaultTextureSize);
+  if (name == "marble") return marble_texture(kDefaultTextureSize, 1);
   try {
     return read_image(directory / name);
   } catch (const InputError& error) {

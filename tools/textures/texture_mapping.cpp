@@ -13,7 +13,7 @@ namespace {
 
 using Vec2d = Eigen::Vector2d;
 
-constexpr double tiles_across = 2;  ///< Copies of the image along the body's longest edge, where no size is given.
+constexpr double kTilesAcross = 2;  ///< Copies of the image along the body's longest edge, where no size is given.
 
 /// Directions in which u and v grow, and the one from which the texture is seen unmirrored: right x up = out.
 struct Chart {
@@ -33,7 +33,7 @@ Vec3 unit_axis(const scenes::TextureSpec& texture) {
 }
 
 double tile_size(const scenes::TextureSpec& texture, const RestFrame& rest) {
-  return texture.tile_size > 0 ? texture.tile_size : rest.size / tiles_across;
+  return texture.tile_size > 0 ? texture.tile_size : rest.size / kTilesAcross;
 }
 
 Vec2f project(const Vec3& rest_position, const Chart& chart, const RestFrame& rest, double tile) {

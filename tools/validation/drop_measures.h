@@ -41,14 +41,14 @@ inline sph::TriangleMesh ellipsoid_mesh(const Vec3& axes, int rings) {
 
 /// A drop of fluid without gravity, with surface tension 1 N/m, density 1000 kg/m^3 and radius 0.1 m.
 struct DropSetup {
-  static constexpr double radius = 0.1, tension = 1, density = 1000;
+  static constexpr double kRadius = 0.1, kTension = 1, kDensity = 1000;
 
   static sph::SimulationSetup plain(double spacings_per_radius, double viscosity) {
     sph::SimulationSetup setup;
-    setup.settings.spacing = radius / spacings_per_radius;
+    setup.settings.spacing = kRadius / spacings_per_radius;
     setup.settings.gravity.setZero();
     setup.settings.viscosity = viscosity;
-    setup.settings.surface_tension = tension;
+    setup.settings.surface_tension = kTension;
     // The pressure 2 gamma / R compresses by 0.9 %; the automatic speed is for drops of any size.
     setup.settings.speed_of_sound = 1.5;
     return setup;
@@ -58,7 +58,7 @@ struct DropSetup {
     sph::SimulationSetup setup = plain(spacings_per_radius, viscosity);
     sph::FluidBody body;
     body.shape = sph::FluidBody::Shape::mesh;
-    body.mesh = ellipsoid_mesh(radius * Vec3(stretch, 1 / std::sqrt(stretch), 1 / std::sqrt(stretch)), 24);
+    body.mesh = ellipsoid_mesh(kRadius * Vec3(stretch, 1 / std::sqrt(stretch), 1 / std::sqrt(stretch)), 24);
     setup.bodies.push_back(body);
     return setup;
   }
@@ -66,7 +66,7 @@ struct DropSetup {
   static sph::SimulationSetup cube(double spacings_per_radius, double viscosity) {
     sph::SimulationSetup setup = plain(spacings_per_radius, viscosity);
     sph::FluidBody body;
-    body.block = {Vec3::Constant(-0.806 * radius), Vec3::Constant(0.806 * radius)};
+    body.block = {Vec3::Constant(-0.806 * kRadius), Vec3::Constant(0.806 * kRadius)};
     setup.bodies.push_back(body);
     return setup;
   }
@@ -113,7 +113,7 @@ inline double gyration_ball(const FluidState& state) {
 /// Rayleigh's frequency of mode 2, sqrt(8 gamma / (rho R^3)), of a drop of `count` particles (1/s).
 inline double rayleigh_frequency(std::size_t count, double spacing) {
   const double volume = static_cast<double>(count) * spacing * spacing * spacing;
-  return std::sqrt(8 * DropSetup::tension / (DropSetup::density * volume / (4.0 / 3 * M_PI)));
+  return std::sqrt(8 * DropSetup::kTension / (DropSetup::kDensity * volume / (4.0 / 3 * M_PI)));
 }
 
 struct Oscillation {
@@ -171,9 +171,9 @@ inline double core_pressure(const sph::Solver& solver) {
   double sum = 0;
   int count = 0;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
-    if ((state.positions[i] - c).norm() > 0.5 * DropSetup::radius) continue;
+    if ((state.positions[i] - c).norm() > 0.5 * DropSetup::kRadius) continue;
     const double sound = solver.settings().speed_of_sound;
-    sum += DropSetup::density * sound * sound / 7 * (std::pow(state.densities[i] / DropSetup::density, 7) - 1);
+    sum += DropSetup::kDensity * sound * sound / 7 * (std::pow(state.densities[i] / DropSetup::kDensity, 7) - 1);
     ++count;
   }
   return sum / count;

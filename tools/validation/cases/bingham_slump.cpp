@@ -11,10 +11,10 @@ namespace {
 
 using sph::Vec3;
 
-constexpr double edge = 0.2;          // m, of the half block: the other half is behind a free-slip wall
-constexpr double gravity = 9.81;      // m/s^2
-constexpr double yield_stress = 140;  // Pa
-constexpr double end = 2;             // s
+constexpr double kEdge = 0.2;         // m, of the half block: the other half is behind a free-slip wall
+constexpr double kGravity = 9.81;     // m/s^2
+constexpr double kYieldStress = 140;  // Pa
+constexpr double kEnd = 2;            // s
 
 // A heap that has yielded everywhere and stopped. The yield stress acts on its base, and the horizontal force on a
 // section balances it: d/dx(rho g h^2 / 2 - c tau_y h) = -tau_y, so h^2 - 2 c s h = 2 s (front - x) with s = tau_y /
@@ -23,13 +23,13 @@ constexpr double end = 2;             // s
 // height that is pi / 2 tau_y h, so c = pi / 2 (as Nye 1951; not checked). The heap then ends in a cliff 2 c s
 // high.
 struct FinalShape {
-  double slope = yield_stress / (1000 * gravity), cliff = 0, front = 0;
+  double slope = kYieldStress / (1000 * kGravity), cliff = 0, front = 0;
 
   explicit FinalShape(double normal_stress) : cliff(2 * normal_stress * slope) {
-    double low = 0, high = 10 * edge;
+    double low = 0, high = 10 * kEdge;
     for (int k = 0; k < 60; ++k) {
       front = 0.5 * (low + high);
-      (volume() > edge * edge ? high : low) = front;
+      (volume() > kEdge * kEdge ? high : low) = front;
     }
   }
   double height(double x) const {
@@ -43,19 +43,19 @@ struct FinalShape {
 
 ValidationResult run(double resolution) {
   const int across = static_cast<int>(std::lround(14 * resolution));
-  const double spacing = edge / across, width = 5 * spacing;
-  sph::SimulationSetup setup = flow_setup(spacing, 0, {0, -gravity, 0});
+  const double spacing = kEdge / across, width = 5 * spacing;
+  sph::SimulationSetup setup = flow_setup(spacing, 0, {0, -kGravity, 0});
   sph::Fluid mud;
   mud.name = "mud";
   mud.viscosity = 0.01;
-  mud.rheology.yield_stress = yield_stress;
+  mud.rheology.yield_stress = kYieldStress;
   mud.rheology.regularization = 300;
   mud.rheology.max_viscosity = 20;
   setup.fluids = {mud};
   setup.settings.max_speed = 1.5;
   setup.settings.domain = {{-1, -1, 0}, {2, 1, width}};
   setup.settings.periodic = {false, false, true};
-  setup.bodies.push_back(block_body({0, 0, 0}, {edge, edge, width}));
+  setup.bodies.push_back(block_body({0, 0, 0}, {kEdge, kEdge, width}));
   setup.boundaries.push_back(plane_wall({-0.02, 0, 0}, {0, 0, width}, {1.5, 0, 0}, 0));
   setup.boundaries.push_back(plane_wall({0, 0, 0}, {0, 0.4, 0}, {0, 0, width}, 1));
 
@@ -66,7 +66,7 @@ ValidationResult run(double resolution) {
   sph::FluidState state;
   double front = 0, height = 0, front_before = 0;
   for (int k = 0; k <= 40; ++k) {
-    solver.advance_to(end * k / 40);
+    solver.advance_to(kEnd * k / 40);
     state = solver.state();
     front = height = 0;
     for (const Vec3& p : state.positions) {
@@ -103,7 +103,7 @@ ValidationResult run(double resolution) {
   result.figures = {
       near_to("front where it stops, share of theory", front / shape.front, 1, 0.1),
       near_to("height where it stops, share of theory", height / shape.height(0), 1, 0.1),
-      at_most("motion of the front in the last quarter, share of its way", (front - front_before) / (front - edge),
+      at_most("motion of the front in the last quarter, share of its way", (front - front_before) / (front - kEdge),
               0.03),
   };
   result.plots.plots = {line_plot("Where it stops", "x (m)", "height (m)", {theory, surface, shallow}),

@@ -14,7 +14,7 @@ namespace {
 
 using sph::Vec3;
 
-constexpr double end = 0.6;  // s; the bodies touch at 0.05 s and are one lump at the end
+constexpr double kEnd = 0.6;  // s; the bodies touch at 0.05 s and are one lump at the end
 
 // A drop and a block that turn hit each other off centre; nothing else acts.
 sph::SimulationSetup collision(int particles_across, double viscosity) {
@@ -69,7 +69,7 @@ ValidationResult run(double resolution) {
     Series series{fmt::format("ν = {} m²/s", viscosity), {}, {}};
     double highest_rise = 0, lowest = start.energy();
     for (int k = 0; k <= 120; ++k) {
-      solver.advance_to(end * k / 120);
+      solver.advance_to(kEnd * k / 120);
       const Totals now = totals(solver);
       momentum = std::max(momentum, (now.momentum - start.momentum).norm() / start.speeds);
       angular = std::max(angular, (now.angular_momentum - start.angular_momentum).norm() / start.moments);

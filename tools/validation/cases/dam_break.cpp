@@ -21,13 +21,13 @@ namespace {
 
 using sph::Vec3;
 
-constexpr double gravity = 9.81, water = 1e-6;  // m/s^2, m^2/s
-constexpr int rows = 6;                         // particles across the sheet, which is periodic
+constexpr double kGravity = 9.81, kWater = 1e-6;  // m/s^2, m^2/s
+constexpr int kRows = 6;                          // particles across the sheet, which is periodic
 
 sph::SimulationSetup column(const DamBreakSeries& experiment, int across) {
   const double width = experiment.width, height = experiment.height * width;
-  const double spacing = width / across, thickness = rows * spacing, tank = 20 * width;
-  sph::SimulationSetup setup = flow_setup(spacing, water, {0, -gravity, 0});
+  const double spacing = width / across, thickness = kRows * spacing, tank = 20 * width;
+  sph::SimulationSetup setup = flow_setup(spacing, kWater, {0, -kGravity, 0});
   setup.settings.wall_drag = 1;
   setup.settings.domain = {{0, 0, 0}, {0, 0, thickness}};
   setup.settings.periodic = {false, false, true};
@@ -53,15 +53,15 @@ struct Front {
 double front_place(const sph::FluidState& state, double spacing) {
   std::vector<double> x;
   for (const Vec3& p : state.positions) x.push_back(p.x());
-  std::partial_sort(x.begin(), x.begin() + rows, x.end(), std::greater<>());
+  std::partial_sort(x.begin(), x.begin() + kRows, x.end(), std::greater<>());
   double sum = 0;
-  for (int k = 0; k < rows; ++k) sum += x[static_cast<std::size_t>(k)];
-  return sum / rows + 0.5 * spacing;
+  for (int k = 0; k < kRows; ++k) sum += x[static_cast<std::size_t>(k)];
+  return sum / kRows + 0.5 * spacing;
 }
 
 Front run_column(const DamBreakSeries& experiment, int across) {
   sph::Solver solver(column(experiment, across));
-  const double unit = std::sqrt(experiment.width / (2 * gravity)), end = experiment.points.back().time;
+  const double unit = std::sqrt(experiment.width / (2 * kGravity)), end = experiment.points.back().time;
   Front front{{0}, {1}};
   for (double t = 0.05; t < end + 0.05; t += 0.05) {
     solver.advance_to(t * unit);

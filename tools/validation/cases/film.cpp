@@ -10,24 +10,24 @@ namespace {
 
 using sph::Vec3;
 
-constexpr double depth = 0.01, gravity = 9.81, angle = 30 * std::numbers::pi / 180;  // m, m/s^2
-constexpr double reynolds = 1;                                                       // surface speed times depth / nu
+constexpr double kDepth = 0.01, kGravity = 9.81, kAngle = 30 * std::numbers::pi / 180;  // m, m/s^2
+constexpr double kReynolds = 1;  // surface speed times depth / nu
 
 // Axes along (x) and across (y) the incline; endless along it and sideways.
 sph::SimulationSetup film(int layers, double viscosity) {
-  const double spacing = depth / layers, length = 6 * spacing;
-  sph::SimulationSetup setup = flow_setup(spacing, viscosity, gravity * Vec3(std::sin(angle), -std::cos(angle), 0));
-  setup.settings.max_speed = std::sqrt(2 * gravity * depth);
+  const double spacing = kDepth / layers, length = 6 * spacing;
+  sph::SimulationSetup setup = flow_setup(spacing, viscosity, kGravity * Vec3(std::sin(kAngle), -std::cos(kAngle), 0));
+  setup.settings.max_speed = std::sqrt(2 * kGravity * kDepth);
   add_endless_floor(length, setup);
-  setup.bodies.push_back(block_body({0, 0, 0}, {length, depth, length}));
+  setup.bodies.push_back(block_body({0, 0, 0}, {length, kDepth, length}));
   return setup;
 }
 
 ValidationResult run(double resolution) {
   const int layers = static_cast<int>(std::lround(16 * resolution));
-  const double spacing = depth / layers;
-  const double viscosity = std::sqrt(gravity * std::sin(angle) * std::pow(depth, 3) / (2 * reynolds));
-  const double surface_speed = gravity * std::sin(angle) * depth * depth / (2 * viscosity);
+  const double spacing = kDepth / layers;
+  const double viscosity = std::sqrt(kGravity * std::sin(kAngle) * std::pow(kDepth, 3) / (2 * kReynolds));
+  const double surface_speed = kGravity * std::sin(kAngle) * kDepth * kDepth / (2 * viscosity);
   sph::Solver solver(film(layers, viscosity));
   // Slowest mode: exp(-pi^2 / 4 nu t / H^2); then the mean of ten states.
   ValidationResult result;
@@ -37,13 +37,13 @@ ValidationResult run(double resolution) {
   double top = 0, top_reference = 0, slip_sum = 0, slip_weight = 0;
   constexpr int states = 10;
   for (int n = 0; n < states; ++n) {
-    solver.advance_to((3 + 0.1 * n) * depth * depth / viscosity);
+    solver.advance_to((3 + 0.1 * n) * kDepth * kDepth / viscosity);
     const sph::FluidState state = solver.state();
     const auto height = [&](std::size_t i) { return state.positions[i].y(); };
     const auto speed = [&](std::size_t i) { return state.velocities[i].x(); };
     const LayerMeans profile = layer_means(state, 0, spacing, height, speed);
     for (std::size_t k = 0; k < profile.centers.size(); ++k) {
-      const double y = profile.centers[k], wanted = surface_speed * (2 * y / depth - y * y / (depth * depth));
+      const double y = profile.centers[k], wanted = surface_speed * (2 * y / kDepth - y * y / (kDepth * kDepth));
       error += std::pow(profile.means[k] - wanted, 2), norm += wanted * wanted;
       if (n + 1 < states) continue;
       computed.x.push_back(y), computed.y.push_back(profile.means[k]);
@@ -52,11 +52,11 @@ ValidationResult run(double resolution) {
     }
     top += profile.means.back() / states;
     const double y = profile.centers.back();
-    top_reference += surface_speed * (2 * y / depth - y * y / (depth * depth)) / states;
+    top_reference += surface_speed * (2 * y / kDepth - y * y / (kDepth * kDepth)) / states;
     // The speed at the wall: a straight line through the two lowest layers, less the parabola's own curvature.
     const double y0 = profile.centers[0], y1 = profile.centers[1];
     const double slope = (profile.means[1] - profile.means[0]) / (y1 - y0);
-    slip_sum += profile.means[0] - slope * y0 - surface_speed * y0 * y1 / (depth * depth);
+    slip_sum += profile.means[0] - slope * y0 - surface_speed * y0 * y1 / (kDepth * kDepth);
     slip_weight += surface_speed;
   }
   result.figures = {

@@ -12,24 +12,24 @@ namespace {
 
 using sph::Vec3;
 
-constexpr double radius = 1, height = 1, gravity = 10;  // m, m/s^2
+constexpr double kRadius = 1, kHeight = 1, kGravity = 10;  // m, m/s^2
 // Where the law is fitted. It holds for sheets that are thin and have forgotten how they began: by the lubrication
 // equation, which takes them as thin from the start, the exponent is within 0.001 of 1/8 from 1.8 radii on; a cylinder
 // as high as wide first has to fall, and follows from 1.9 radii on.
-constexpr double fitted_from = 2 * radius, fitted_to = 2.6 * radius;
-constexpr double viscosity = 0.4;  // m^2/s; g R0^3 / nu^2 = 62: inertia does not matter
+constexpr double kFittedFrom = 2 * kRadius, kFittedTo = 2.6 * kRadius;
+constexpr double kViscosity = 0.4;  // m^2/s; g R0^3 / nu^2 = 62: inertia does not matter
 
 // A quarter of a cylinder between two planes of symmetry.
 sph::SimulationSetup quarter(int across) {
-  const double spacing = radius / across, floor = 3.8 * radius, top = 1.5 * height;
-  sph::SimulationSetup setup = flow_setup(spacing, viscosity, {0, -gravity, 0});
+  const double spacing = kRadius / across, floor = 3.8 * kRadius, top = 1.5 * kHeight;
+  sph::SimulationSetup setup = flow_setup(spacing, kViscosity, {0, -kGravity, 0});
   // The fluid falls by itself, braked by its viscosity: far slower than in free fall.
   setup.settings.max_speed = 1.0;
   for (int i = 0; i < across; ++i) {
     for (int j = 0; j < across; ++j) {
       if (std::hypot(i + 0.5, j + 0.5) > across) continue;
       const Vec3 corner(i * spacing, 0, j * spacing);
-      setup.bodies.push_back(block_body(corner, corner + Vec3(spacing, height, spacing)));
+      setup.bodies.push_back(block_body(corner, corner + Vec3(spacing, kHeight, spacing)));
     }
   }
   setup.boundaries.push_back(plane_wall({0, 0, 0}, {0, 0, floor}, {floor, 0, 0}, 0));
@@ -55,22 +55,22 @@ double front_radius(const sph::FluidState& state, double spacing) {
 ValidationResult run(double resolution) {
   const int across = static_cast<int>(std::lround(24 * resolution));
   sph::Solver solver(quarter(across));
-  const double spacing = radius / across;
+  const double spacing = kRadius / across;
   const double volume = 4 * static_cast<double>(solver.particle_count()) * std::pow(spacing, 3);
-  const double scale = std::pow(gravity * std::pow(volume, 3) / (3 * viscosity), 0.125);
+  const double scale = std::pow(kGravity * std::pow(volume, 3) / (3 * kViscosity), 0.125);
   const auto time_of = [&](double r) { return std::pow(r / (0.894 * scale), 8); };
 
   ValidationResult result;
   result.data.columns = {"time_s", "radius_m", "reference_m", "lubrication_m"};
   Series computed{"computed", {}, {}}, reference{"Huppert 1982", {}, {}}, sheet{"lubrication equation", {}, {}};
   SpreadingCylinder cylinder;
-  cylinder.radius = radius, cylinder.height = volume / (std::numbers::pi * radius * radius);
-  cylinder.gravity = gravity, cylinder.viscosity = viscosity, cylinder.farthest = 1.1 * fitted_to;
+  cylinder.radius = kRadius, cylinder.height = volume / (std::numbers::pi * kRadius * kRadius);
+  cylinder.gravity = kGravity, cylinder.viscosity = kViscosity, cylinder.farthest = 1.1 * kFittedTo;
   const SpreadingFront lubrication = spread(cylinder);
   std::vector<double> log_time, log_radius;
   double coefficient = 0, farthest_off = 0;
   constexpr int steps = 40;
-  const double first = time_of(1.2 * radius), last = time_of(fitted_to);
+  const double first = time_of(1.2 * kRadius), last = time_of(kFittedTo);
   for (int n = 0; n <= steps; ++n) {
     const double t = first * std::pow(last / first, static_cast<double>(n) / steps);
     solver.advance_to(t);
@@ -80,7 +80,7 @@ ValidationResult run(double resolution) {
     const double thin = lubrication.radius_at(t);
     sheet.x.push_back(t), sheet.y.push_back(thin);
     result.data.add({t, r, wanted, thin});
-    if (r < fitted_from) continue;
+    if (r < kFittedFrom) continue;
     log_time.push_back(std::log(t)), log_radius.push_back(std::log(r));
     coefficient += 0.894 * r / wanted;
     farthest_off = std::max(farthest_off, std::abs(r / thin - 1));

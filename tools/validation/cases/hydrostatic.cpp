@@ -12,24 +12,24 @@ using sph::Vec3;
 
 // Viscous enough that the sound of the start, which rings along the column with nothing to stop it, dies out in some
 // seconds.
-constexpr double height = 1, gravity = 9.81, viscosity = 0.5;
+constexpr double kHeight = 1, kGravity = 9.81, kViscosity = 0.5;
 
 // The column is periodic in both horizontal directions, an endless pool. Between walls the pressure of the middle would
 // be higher by the share of the outermost half layer: walls push, but do not carry, and fluid beside them lacks
 // neighbours.
 sph::SimulationSetup column(int layers) {
-  const double spacing = height / layers, width = 8 * spacing;
-  sph::SimulationSetup setup = flow_setup(spacing, viscosity, {0, -gravity, 0});
+  const double spacing = kHeight / layers, width = 8 * spacing;
+  sph::SimulationSetup setup = flow_setup(spacing, kViscosity, {0, -kGravity, 0});
   add_endless_floor(width, setup);
-  setup.bodies.push_back(block_body({0, 0, 0}, {width, height, width}));
+  setup.bodies.push_back(block_body({0, 0, 0}, {width, kHeight, width}));
   return setup;
 }
 
 ValidationResult run(double resolution) {
   const int layers = static_cast<int>(std::lround(20 * resolution));
   sph::Solver solver(column(layers));
-  const double mass = 1000 * std::pow(height / layers, 3) * static_cast<double>(solver.particle_count());
-  const double scale = mass * gravity * height;  // J
+  const double mass = 1000 * std::pow(kHeight / layers, 3) * static_cast<double>(solver.particle_count());
+  const double scale = mass * kGravity * kHeight;  // J
   Series energy{"kinetic energy / (m g H)", {}, {}};
   const double end = 4;
   for (int k = 1; k <= 80; ++k) {
@@ -45,15 +45,15 @@ ValidationResult run(double resolution) {
   // As thick as the kernel reaches: the force sees the mean pressure of neighbouring layers of particles only, and at
   // rest the lattice of the start alternates by 2.5 % about it.
   const LayerMeans profile = layer_means(
-      state, 0, 2 * height / layers, [&](std::size_t i) { return state.positions[i].y(); },
+      state, 0, 2 * kHeight / layers, [&](std::size_t i) { return state.positions[i].y(); },
       [&](std::size_t i) { return pressure[i]; });
-  const double bottom = 1000 * gravity * height;
+  const double bottom = 1000 * kGravity * kHeight;
   Series computed{"computed", {}, {}}, reference{"ρ g (H − y)", {}, {}};
   ValidationResult result;
   result.data.columns = {"height_m", "pressure_pa", "reference_pa"};
   double worst = 0;
   for (std::size_t k = 0; k < profile.centers.size(); ++k) {
-    const double y = profile.centers[k], wanted = std::max(0.0, bottom * (1 - y / height));
+    const double y = profile.centers[k], wanted = std::max(0.0, bottom * (1 - y / kHeight));
     worst = std::max(worst, std::abs(profile.means[k] - wanted) / bottom);
     computed.x.push_back(y), computed.y.push_back(profile.means[k]);
     reference.x.push_back(y), reference.y.push_back(wanted);

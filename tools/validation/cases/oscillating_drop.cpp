@@ -7,21 +7,21 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr double viscosity = 5e-4, stretch = 1.15, periods = 2.5;
+constexpr double kViscosity = 5e-4, kStretch = 1.15, kPeriods = 2.5;
 
 ValidationResult run(double resolution) {
   ValidationResult result;
   result.data.columns = {"spacings_per_radius", "time_over_period", "elongation", "rayleigh_and_lamb"};
   Plot plot = line_plot("Oscillating drop", "time / Rayleigh's period", "elongation", {});
   for (const double spacings : {5.0, 8.0}) {
-    sph::Solver solver(DropSetup::ellipsoid(spacings * resolution, viscosity, stretch));
+    sph::Solver solver(DropSetup::ellipsoid(spacings * resolution, kViscosity, kStretch));
     const double frequency = rayleigh_frequency(solver.particle_count(), solver.settings().spacing);
-    const double decay = 5 * viscosity / (DropSetup::radius * DropSetup::radius);
+    const double decay = 5 * kViscosity / (DropSetup::kRadius * DropSetup::kRadius);
     const double start = elongation(solver.state());
     Series seen{fmt::format("R = {:.3g} spacings", spacings * resolution), {}, {}};
     Series theory{"Rayleigh's frequency, Lamb's decay", {}, {}};
     std::vector<double> times, values;
-    for (int k = 0; k <= 40 * periods; ++k) {
+    for (int k = 0; k <= 40 * kPeriods; ++k) {
       const double t = k * 2 * M_PI / frequency / 40;
       solver.advance_to(t);
       const double value = elongation(solver.state());

@@ -11,9 +11,9 @@ namespace {
 
 using sph::Vec3;
 
-constexpr double depth = 0.2;  // m
-constexpr double drive = 5;    // m/s^2 along the incline
-constexpr double end = 0.4;    // s; the flow is steady after a tenth of a second
+constexpr double kDepth = 0.2;  // m
+constexpr double kDrive = 5;    // m/s^2 along the incline
+constexpr double kEnd = 0.4;    // s; the flow is steady after a tenth of a second
 
 struct Film {
   std::string name;
@@ -39,10 +39,10 @@ Film herschel_bulkley(const std::string& name, double consistency, double flow_i
   law.yield_stress = yield_stress;
   law.regularization = 1000;
   law.max_viscosity = 100;
-  const double plug = depth - yield_stress / (1000 * drive), n = flow_index, power = (n + 1) / n;
+  const double plug = kDepth - yield_stress / (1000 * kDrive), n = flow_index, power = (n + 1) / n;
   film.speed = [=](double y) {
     const double below = std::pow(plug, power) - std::pow(std::max(0.0, plug - y), power);
-    return n / (n + 1) * std::pow(1000 * drive / consistency, 1 / n) * below;
+    return n / (n + 1) * std::pow(1000 * kDrive / consistency, 1 / n) * below;
   };
   return film;
 }
@@ -50,8 +50,8 @@ Film herschel_bulkley(const std::string& name, double consistency, double flow_i
 Film two_layers(const std::string& name, double lower, double upper, sph::ViscositySolver solver) {
   Film film{name, {fluid("lower", lower), fluid("upper", upper)}, {}, solver};
   film.speed = [=](double y) {
-    const auto moment = [](double height) { return drive * (depth * height - 0.5 * height * height); };
-    const double middle = depth / 2;
+    const auto moment = [](double height) { return kDrive * (kDepth * height - 0.5 * height * height); };
+    const double middle = kDepth / 2;
     return moment(std::min(y, middle)) / lower + (y > middle ? (moment(y) - moment(middle)) / upper : 0);
   };
   return film;
@@ -59,15 +59,15 @@ Film two_layers(const std::string& name, double lower, double upper, sph::Viscos
 
 // The film in a box that is periodic along the flow and across it. A weak pull towards the plane keeps it together.
 sph::SimulationSetup film_setup(const Film& film, int layers) {
-  const double spacing = depth / layers, width = 6 * spacing;
-  sph::SimulationSetup setup = flow_setup(spacing, 1, {drive, -0.3, 0});
+  const double spacing = kDepth / layers, width = 6 * spacing;
+  sph::SimulationSetup setup = flow_setup(spacing, 1, {kDrive, -0.3, 0});
   setup.settings.viscosity_solver = film.solver;
   setup.settings.max_speed = 0.4;
   add_endless_floor(width, setup);
   setup.fluids = film.fluids;
   const auto parts = static_cast<double>(film.fluids.size());
   for (std::size_t k = 0; k < film.fluids.size(); ++k) {
-    const double low = depth * static_cast<double>(k) / parts, high = depth * static_cast<double>(k + 1) / parts;
+    const double low = kDepth * static_cast<double>(k) / parts, high = kDepth * static_cast<double>(k + 1) / parts;
     setup.bodies.push_back(block_body({0, low, 0}, {width, high, width}));
     setup.bodies.back().fluid = film.fluids[k].name;
   }
@@ -85,10 +85,10 @@ ValidationResult run(double resolution) {
   result.data.columns = {"film", "height_m", "speed_m_per_s", "theory_m_per_s"};
   for (const Film& film : films) {
     sph::Solver solver(film_setup(film, layers));
-    solver.advance_to(end);
+    solver.advance_to(kEnd);
     const sph::FluidState state = solver.state();
     const LayerMeans means = layer_means(
-        state, 0, depth / layers, [&](std::size_t i) { return state.positions[i].y(); },
+        state, 0, kDepth / layers, [&](std::size_t i) { return state.positions[i].y(); },
         [&](std::size_t i) { return state.velocities[i].x(); });
     Series computed{"computed", means.means, means.centers}, theory{"theory", {}, {}};
     std::vector<double> wanted;
@@ -99,8 +99,8 @@ ValidationResult run(double resolution) {
       result.data.add({name, means.centers[k], means.means[k], wanted.back()});
     }
     for (int k = 0; k <= 60; ++k) {
-      theory.x.push_back(film.speed(depth * k / 60));
-      theory.y.push_back(depth * k / 60);
+      theory.x.push_back(film.speed(kDepth * k / 60));
+      theory.y.push_back(kDepth * k / 60);
     }
     result.figures.push_back(
         at_most("error of the profile (relative L2): " + film.name, relative_l2(means.means, wanted), 0.03));

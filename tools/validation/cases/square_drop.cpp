@@ -24,7 +24,7 @@ ValidationResult run(double resolution) {
     for (int k = 0; k <= 50; ++k) {
       solver.advance_to(2.5 * k / 50);
       const FluidState state = solver.state();
-      const double p = core_pressure(solver) / (2 * DropSetup::tension / ball);
+      const double p = core_pressure(solver) / (2 * DropSetup::kTension / ball);
       round.x.push_back(state.time);
       round.y.push_back(asphericity(state, spacing));
       laplace.x.push_back(state.time);

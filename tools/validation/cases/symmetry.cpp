@@ -14,14 +14,14 @@ namespace {
 
 using sph::Vec3;
 
-constexpr double radius = 0.2;  // m
+constexpr double kRadius = 0.2;  // m
 
 using Image = std::function<Vec3(const Vec3&)>;
 
 // A drop falls askew on a square plate. The plate is its own image under both maps.
 sph::SimulationSetup falling_drop(double spacing, const Vec3& velocity) {
   sph::SimulationSetup setup = flow_setup(spacing, 0.05, {0, -9.81, 0});
-  setup.bodies.push_back(ball_body({0, radius + 0.5 * spacing, 0}, radius, velocity));
+  setup.bodies.push_back(ball_body({0, kRadius + 0.5 * spacing, 0}, kRadius, velocity));
   setup.boundaries.push_back(plane_wall({-0.6, 0, -0.6}, {0, 0, 1.2}, {1.2, 0, 0}, 0));
   return setup;
 }
@@ -45,7 +45,7 @@ double largest_distance(const sph::FluidState& original, const sph::FluidState& 
 }
 
 ValidationResult run(double resolution) {
-  const double spacing = radius / std::round(8 * resolution);
+  const double spacing = kRadius / std::round(8 * resolution);
   const Vec3 velocity(0.3, -1, 0.1);
   const Image mirror = [](const Vec3& p) { return Vec3(-p.x(), p.y(), p.z()); };
   const Image turn = [](const Vec3& p) { return Vec3(p.z(), p.y(), -p.x()); };
