@@ -10,7 +10,7 @@
 namespace flowskin::scenes {
 namespace {
 
-using Source = ParticlesSpec::Source;
+using ParticleOrigin = ParticlesSpec::Source;
 
 /// More particles than this are a slip of the spacing: they would need tens of gigabytes.
 constexpr double max_particles = 1e8;
@@ -65,7 +65,7 @@ void check_body(const Scene& scene, std::size_t i, Checker& checker) {
     checker.require(is_ordered(body.cuts[k]), "bodies", i, "cuts",
                     fmt::format("has an entry {} whose min is not smaller than its max along every axis", k));
   }
-  if (scene.particles.source == Source::prescribed) {
+  if (scene.particles.source == ParticleOrigin::prescribed) {
     const std::string message =
         "has no meaning with particles.source \"prescribed\": particles.motion gives the velocity";
     checker.require(body.velocity.isZero(0), "bodies", i, "velocity", message);
@@ -75,10 +75,10 @@ void check_body(const Scene& scene, std::size_t i, Checker& checker) {
 
 void check_particles(const Scene& scene, Checker& checker) {
   const bool has_bodies = !scene.bodies.empty(), has_positions = !scene.particles.positions.empty();
-  if (scene.particles.source == Source::simulation) {
+  if (scene.particles.source == ParticleOrigin::simulation) {
     checker.require(has_bodies || !scene.emitters.empty(), "bodies",
                     "is empty and there are no emitters: nothing to simulate; give at least one body or emitter");
-  } else if (scene.particles.source == Source::prescribed) {
+  } else if (scene.particles.source == ParticleOrigin::prescribed) {
     checker.require(has_bodies || has_positions, "bodies",
                     "is empty and there are no particles.positions: nothing moves; give one of the two");
     checker.require(!(has_bodies && has_positions), "particles.positions",

@@ -13,24 +13,24 @@ namespace flowskin::scenes {
 namespace {
 
 /// The names of the first PLY description, those with widths, and the 64-bit integers that some programs add.
-constexpr std::array<std::pair<std::string_view, PlyType>, 18> type_names{{{"char", PlyType::int8},
-                                                                           {"int8", PlyType::int8},
-                                                                           {"uchar", PlyType::uint8},
-                                                                           {"uint8", PlyType::uint8},
-                                                                           {"short", PlyType::int16},
-                                                                           {"int16", PlyType::int16},
-                                                                           {"ushort", PlyType::uint16},
-                                                                           {"uint16", PlyType::uint16},
-                                                                           {"int", PlyType::int32},
-                                                                           {"int32", PlyType::int32},
-                                                                           {"uint", PlyType::uint32},
-                                                                           {"uint32", PlyType::uint32},
-                                                                           {"int64", PlyType::int64},
-                                                                           {"uint64", PlyType::uint64},
-                                                                           {"float", PlyType::float32},
-                                                                           {"float32", PlyType::float32},
-                                                                           {"double", PlyType::float64},
-                                                                           {"float64", PlyType::float64}}};
+constexpr std::array<std::pair<std::string_view, PlyType>, 18> ply_types{{{"char", PlyType::int8},
+                                                                          {"int8", PlyType::int8},
+                                                                          {"uchar", PlyType::uint8},
+                                                                          {"uint8", PlyType::uint8},
+                                                                          {"short", PlyType::int16},
+                                                                          {"int16", PlyType::int16},
+                                                                          {"ushort", PlyType::uint16},
+                                                                          {"uint16", PlyType::uint16},
+                                                                          {"int", PlyType::int32},
+                                                                          {"int32", PlyType::int32},
+                                                                          {"uint", PlyType::uint32},
+                                                                          {"uint32", PlyType::uint32},
+                                                                          {"int64", PlyType::int64},
+                                                                          {"uint64", PlyType::uint64},
+                                                                          {"float", PlyType::float32},
+                                                                          {"float32", PlyType::float32},
+                                                                          {"double", PlyType::float64},
+                                                                          {"float64", PlyType::float64}}};
 
 std::string rest_of(std::string_view line) {
   skip_space(line);
@@ -108,8 +108,8 @@ class HeaderParser {
 
   PlyType parse_type(std::string_view word) const {
     const auto* found =
-        std::find_if(type_names.begin(), type_names.end(), [&](const auto& t) { return t.first == word; });
-    if (found == type_names.end()) fail("unknown type \"" + std::string(word.substr(0, 40)) + "\"");
+        std::find_if(ply_types.begin(), ply_types.end(), [&](const auto& t) { return t.first == word; });
+    if (found == ply_types.end()) fail("unknown type \"" + std::string(word.substr(0, 40)) + "\"");
     return found->second;
   }
 

@@ -16,20 +16,20 @@
 namespace flowskin::scenes {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, NumberType>, 14> type_names{{{"char", NumberType::int8},
-                                                                              {"signed_char", NumberType::int8},
-                                                                              {"unsigned_char", NumberType::uint8},
-                                                                              {"short", NumberType::int16},
-                                                                              {"unsigned_short", NumberType::uint16},
-                                                                              {"int", NumberType::int32},
-                                                                              {"unsigned_int", NumberType::uint32},
-                                                                              {"long", NumberType::int64},
-                                                                              {"unsigned_long", NumberType::uint64},
-                                                                              {"vtktypeint64", NumberType::int64},
-                                                                              {"vtktypeuint64", NumberType::uint64},
-                                                                              {"vtkidtype", NumberType::int32},
-                                                                              {"float", NumberType::float32},
-                                                                              {"double", NumberType::float64}}};
+constexpr std::array<std::pair<std::string_view, NumberType>, 14> vtk_types{{{"char", NumberType::int8},
+                                                                             {"signed_char", NumberType::int8},
+                                                                             {"unsigned_char", NumberType::uint8},
+                                                                             {"short", NumberType::int16},
+                                                                             {"unsigned_short", NumberType::uint16},
+                                                                             {"int", NumberType::int32},
+                                                                             {"unsigned_int", NumberType::uint32},
+                                                                             {"long", NumberType::int64},
+                                                                             {"unsigned_long", NumberType::uint64},
+                                                                             {"vtktypeint64", NumberType::int64},
+                                                                             {"vtktypeuint64", NumberType::uint64},
+                                                                             {"vtkidtype", NumberType::int32},
+                                                                             {"float", NumberType::float32},
+                                                                             {"double", NumberType::float64}}};
 
 /// More components than any attribute of a point has.
 constexpr std::uint64_t most_components = 1024;
@@ -105,8 +105,8 @@ class VtkParser {
   NumberType take_type(std::string_view& line) const {
     const std::string word = lower(take_word(line));
     const auto* found =
-        std::find_if(type_names.begin(), type_names.end(), [&](const auto& t) { return t.first == word; });
-    if (found == type_names.end())
+        std::find_if(vtk_types.begin(), vtk_types.end(), [&](const auto& t) { return t.first == word; });
+    if (found == vtk_types.end())
       fail(fmt::format("expected a type of numbers such as float, double or int, found \"{}\"", word.substr(0, 40)));
     return found->second;
   }

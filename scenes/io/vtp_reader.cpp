@@ -17,17 +17,17 @@
 namespace flowskin::scenes {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, NumberType>, 10> type_names{{{"Int8", NumberType::int8},
-                                                                              {"UInt8", NumberType::uint8},
-                                                                              {"Int16", NumberType::int16},
-                                                                              {"UInt16", NumberType::uint16},
-                                                                              {"Int32", NumberType::int32},
-                                                                              {"UInt32", NumberType::uint32},
-                                                                              {"Int64", NumberType::int64},
-                                                                              {"UInt64", NumberType::uint64},
-                                                                              {"Float32", NumberType::float32},
-                                                                              {"Float64", NumberType::float64}}};
-constexpr std::uint64_t most_components = 1024;
+constexpr std::array<std::pair<std::string_view, NumberType>, 10> vtp_types{{{"Int8", NumberType::int8},
+                                                                             {"UInt8", NumberType::uint8},
+                                                                             {"Int16", NumberType::int16},
+                                                                             {"UInt16", NumberType::uint16},
+                                                                             {"Int32", NumberType::int32},
+                                                                             {"UInt32", NumberType::uint32},
+                                                                             {"Int64", NumberType::int64},
+                                                                             {"UInt64", NumberType::uint64},
+                                                                             {"Float32", NumberType::float32},
+                                                                             {"Float64", NumberType::float64}}};
+constexpr std::uint64_t most_vtp_components = 1024;
 /// No file of this size exists; larger counts would overflow the arithmetic below.
 constexpr std::uint64_t most_points = std::uint64_t{1} << 40;
 
@@ -145,13 +145,13 @@ class VtpParser {
     array.start = tag.start;
     if (const std::string* name = tag.find("Name")) array.name = *name;
     const std::string* type = tag.find("type");
-    const auto* found = std::find_if(type_names.begin(), type_names.end(),
+    const auto* found = std::find_if(vtp_types.begin(), vtp_types.end(),
                                      [&](const auto& t) { return type != nullptr && t.first == *type; });
-    if (found == type_names.end())
+    if (found == vtp_types.end())
       scanner_.fail(tag.start, fmt::format("the array \"{}\" has the type \"{}\"; expected Float32, Int64 or the like",
                                            array.name, type ? type->substr(0, 40) : ""));
     array.type = found->second;
-    array.components = count_of(tag, "NumberOfComponents", 1, most_components);
+    array.components = count_of(tag, "NumberOfComponents", 1, most_vtp_components);
     const std::string* format = tag.find("format");
     array.format = format ? *format : "ascii";
     if (tag.find("offset")) array.offset = count_of(tag, "offset", 0, std::uint64_t{1} << 62);

@@ -7,24 +7,6 @@ namespace flowskin::sph {
 
 namespace {
 
-// The kd-tree's view of the cluster centres.
-struct CenterCloud {
-  const std::vector<PointCluster>* clusters;
-  std::size_t kdtree_get_point_count() const { return clusters->size(); }
-  float kdtree_get_pt(std::size_t c, std::size_t axis) const {
-    const auto a = static_cast<Eigen::Index>(axis);
-    return 0.5F * ((*clusters)[c].box_min[a] + (*clusters)[c].box_max[a]);
-  }
-  template <class Bounds>
-  bool kdtree_get_bbox(Bounds&) const {
-    return false;
-  }
-};
-
-using CenterTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, CenterCloud, float, std::uint32_t>,
-                                        CenterCloud, 3, std::uint32_t>;
-
 // Collects the indices of everything within a radius; nanoflann's own result set also stores the distances.
 class IndexCollector {
  public:
@@ -46,10 +28,27 @@ class IndexCollector {
 }  // namespace
 
 struct PointClusters::Tree {
+  // nanoflann's view of the cluster centres.
+  struct Cloud {
+    const std::vector<PointCluster>* clusters;
+    std::size_t kdtree_get_point_count() const { return clusters->size(); }
+    float kdtree_get_pt(std::size_t c, std::size_t axis) const {
+      const auto a = static_cast<Eigen::Index>(axis);
+      return 0.5F * ((*clusters)[c].box_min[a] + (*clusters)[c].box_max[a]);
+    }
+    template <class Bounds>
+    bool kdtree_get_bbox(Bounds&) const {
+      return false;
+    }
+  };
+
+  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud, float, std::uint32_t>,
+                                                    Cloud, 3, std::uint32_t>;
+
   explicit Tree(const std::vector<PointCluster>& clusters)
       : cloud{&clusters}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(8)) {}
-  CenterCloud cloud;
-  CenterTree index;
+  Cloud cloud;
+  Index index;
 };
 
 PointClusters::PointClusters() = default;

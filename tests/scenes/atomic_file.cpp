@@ -13,7 +13,7 @@
 #include "common/errors.h"
 #include "tests/scenes/io_fixture.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::atomic_file_test {
 namespace {
 
 class AtomicFileTest : public IoTest {};
@@ -117,4 +117,4 @@ TEST_F(AtomicFileTest, ThreadsThatWriteTheSameFileLeaveOneOfThem) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::atomic_file_test

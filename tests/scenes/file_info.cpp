@@ -4,7 +4,7 @@
 #include "scenes/io/frame_files.h"
 #include "tests/scenes/io_fixture.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::file_info_test {
 namespace {
 
 class FileInfoTest : public IoTest {};
@@ -82,4 +82,4 @@ TEST_F(FileInfoTest, SaysWhatCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::file_info_test

@@ -7,7 +7,7 @@
 #include "scenes/io/ply_reader.h"
 #include "tests/scenes/io_fixture.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::io_locale_test {
 namespace {
 
 struct GermanNumbers : std::numpunct<char> {
@@ -58,4 +58,4 @@ TEST_F(LocaleTest, ReadersUnderstandPointsInAnyLocale) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::io_locale_test

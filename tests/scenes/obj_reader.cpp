@@ -10,7 +10,7 @@
 #include "common/errors.h"
 #include "scenes/io/polygon.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::obj_reader_test {
 namespace {
 
 sph::TriangleMesh read(const std::string& text) { return parse_obj(text, "a.obj"); }
@@ -187,4 +187,4 @@ TEST(TriangulatePolygon, FinishesPolygonsThatCrossThemselves) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::obj_reader_test

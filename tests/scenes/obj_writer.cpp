@@ -8,7 +8,7 @@
 #include "scenes/io/obj_reader.h"
 #include "tests/scenes/io_fixture.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::obj_writer_test {
 namespace {
 
 class ObjWriterTest : public IoTest {
@@ -131,4 +131,4 @@ TEST_F(ObjWriterTest, AnEmptySurfaceIsAFileWithoutVertices) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::obj_writer_test

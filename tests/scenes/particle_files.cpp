@@ -13,7 +13,7 @@
 #include "scenes/io/read_bytes.h"
 #include "scenes/io/vtp_reader.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::particle_files_test {
 namespace {
 
 using testing::AllOf;
@@ -208,4 +208,4 @@ TEST(ParticleFiles, CollectionsOfFiles) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::particle_files_test

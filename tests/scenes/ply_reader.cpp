@@ -9,7 +9,7 @@
 
 #include "common/errors.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::ply_reader_test {
 namespace {
 
 PlyFile read(const std::string& bytes) { return parse_ply(bytes, "a.ply"); }
@@ -263,4 +263,4 @@ TEST(PlyReader, SaysWhatIsWrongWithParticles) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::ply_reader_test

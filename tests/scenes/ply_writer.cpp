@@ -5,7 +5,7 @@
 #include "scenes/io/ply_reader.h"
 #include "tests/scenes/io_fixture.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::ply_writer_test {
 namespace {
 
 class PlyWriterTest : public IoTest {};
@@ -124,4 +124,4 @@ TEST_F(PlyWriterTest, EveryTruncationIsNoticed) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::ply_writer_test

@@ -11,7 +11,7 @@
 #include "scene_file_helpers.h"
 #include "scenes/sources/make_source.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::prescribed_source_test {
 namespace {
 
 using std::numbers::pi;
@@ -297,4 +297,4 @@ TEST(PrescribedSource, UnknownMotionIsAnError) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::prescribed_source_test

@@ -13,7 +13,7 @@
 #include "scenes/sources/particle_sequence.h"
 #include "scenes/sources/particle_spacing.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::recorded_source_test {
 namespace {
 
 using testing::AllOf;
@@ -404,4 +404,4 @@ TEST_F(RecordedSourceTest, SpacingIsEstimatedFromDistances) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::recorded_source_test

@@ -13,7 +13,7 @@
 #include "scene_file_helpers.h"
 #include "scenes/nearest_name.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::scene_file_test {
 namespace {
 
 std::string file_text(const std::filesystem::path& file) {
@@ -276,4 +276,4 @@ TEST(NearestName, FindsWhatWasMeant) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::scene_file_test

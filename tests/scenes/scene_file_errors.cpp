@@ -5,7 +5,7 @@
 
 #include "scene_file_helpers.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::scene_file_errors_test {
 namespace {
 
 using testing::AllOf;
@@ -207,4 +207,4 @@ TEST(SceneFileErrors, AllProblemsAreListedInOrder) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::scene_file_errors_test

@@ -9,7 +9,7 @@
 #include "scene_file_helpers.h"
 #include "scenes/sources/make_source.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::simulation_source_test {
 namespace {
 
 Scene falling_ball() {
@@ -77,4 +77,4 @@ TEST(SimulationSource, ImpossibleScenesAreErrors) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::simulation_source_test

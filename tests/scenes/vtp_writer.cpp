@@ -4,7 +4,7 @@
 #include "scenes/io/frame_files.h"
 #include "tests/scenes/io_fixture.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::vtp_writer_test {
 namespace {
 
 /// A VTP file taken apart by hand, as the VTK file formats document describes it.
@@ -144,4 +144,4 @@ TEST_F(VtpWriterTest, CollectionNamesTimesAndFiles) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::vtp_writer_test

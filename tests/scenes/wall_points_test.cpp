@@ -10,7 +10,7 @@
 #include "tracking/field/field_walls.h"
 #include "tracking/field/metaball_field.h"
 
-namespace flowskin::scenes {
+namespace flowskin::scenes::wall_points_test {
 namespace {
 
 Scene scene_with(const std::string& boundaries, const std::string& tracking = "{}",
@@ -70,4 +70,4 @@ TEST(WallPoints, AreSampledOnceForAllStates) {
 }
 
 }  // namespace
-}  // namespace flowskin::scenes
+}  // namespace flowskin::scenes::wall_points_test

@@ -9,7 +9,7 @@
 #include "sph/walls/wall_kernel.h"
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::boundary_test {
 namespace {
 
 double nearest_distance(const std::vector<Vec3>& samples, const Vec3& p, std::size_t skip = ~std::size_t{0}) {
@@ -178,4 +178,4 @@ TEST(WallGuard, GridFindsEveryTriangleNearby) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::boundary_test

@@ -5,7 +5,7 @@
 #include "sph/walls/wall_kernel.h"
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::conservation_test {
 namespace {
 
 Vec3 angular_momentum(const FluidState& state) {
@@ -165,4 +165,4 @@ TEST(Viscosity, BoundaryLayerOnAPlateMatchesTheory) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::conservation_test

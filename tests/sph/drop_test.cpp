@@ -5,7 +5,7 @@
 #include "tests/sph/test_meshes.h"
 #include "tools/validation/drop_measures.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::drop_test {
 namespace {
 
 using namespace tools;
@@ -178,4 +178,4 @@ TEST(Adhesion, NeedsSurfaceTension) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::drop_test

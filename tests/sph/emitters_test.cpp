@@ -5,7 +5,7 @@
 #include "sph/geometry/mesh_inside.h"
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::emitters_test {
 namespace {
 
 Emitter rectangle(double width, double height) {
@@ -234,4 +234,4 @@ TEST(Sinks, TankWithInflowAndOutflowComesToASteadyLevel) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::emitters_test

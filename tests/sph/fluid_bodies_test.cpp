@@ -7,7 +7,7 @@
 #include "sph/geometry/mesh_inside.h"
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::fluid_bodies_test {
 namespace {
 
 FluidBody block(const Vec3& min, const Vec3& max) {
@@ -193,4 +193,4 @@ TEST(JetEmitter, ImpossibleEmittersAreErrors) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::fluid_bodies_test

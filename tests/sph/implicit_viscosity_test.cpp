@@ -10,7 +10,7 @@
 #include "sph/setup/automatic_values.h"
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::implicit_viscosity_test {
 namespace {
 
 Vec3 angular_momentum(const FluidState& state) {
@@ -315,4 +315,4 @@ TEST(ImplicitViscosity, SameBytesAtAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::implicit_viscosity_test

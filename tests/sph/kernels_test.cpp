@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flowskin::sph {
+namespace flowskin::sph::kernels_test {
 namespace {
 
 template <typename Kernel>
@@ -61,4 +61,4 @@ TYPED_TEST(KernelTest, EightLanesAgreeWithPlainFunctions) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::kernels_test

@@ -8,7 +8,7 @@
 #include "sph/walls/moving_wall.h"
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::moving_walls_test {
 namespace {
 
 const Vec3 zero = Vec3::Zero();
@@ -293,4 +293,4 @@ TEST(MovingWalls, ImpossibleMotionIsExplained) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::moving_walls_test

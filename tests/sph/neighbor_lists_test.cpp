@@ -1,4 +1,5 @@
 // Neighbour lists against brute force.
+#include "common/hilbert.h"
 #include "sph/neighbors/neighbor_lists.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@
 #include "sph/neighbors/hilbert_order.h"
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::neighbor_lists_test {
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
@@ -177,4 +178,4 @@ TEST(HilbertOrder, IsAPermutationAndStable) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::neighbor_lists_test

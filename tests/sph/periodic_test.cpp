@@ -11,7 +11,7 @@
 #include "sph/walls/wall_kernel.h"
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::periodic_test {
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
@@ -233,4 +233,4 @@ TEST(Periodic, ImpossibleSettingsAreExplained) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::periodic_test

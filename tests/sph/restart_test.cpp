@@ -8,7 +8,7 @@
 
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::restart_test {
 namespace {
 
 std::string saved(const Solver& solver) {
@@ -248,4 +248,4 @@ TEST(RestartErrors, FasterSoundAfterwardsIsAllowed) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::restart_test

@@ -6,7 +6,7 @@
 #include "sph/walls/wall_kernel.h"
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::rheology_test {
 namespace {
 
 Fluid herschel_bulkley(double consistency, double flow_index, double yield_stress) {
@@ -187,4 +187,4 @@ TEST(Rheology, YieldStressKeepsAHeap) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::rheology_test

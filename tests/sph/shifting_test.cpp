@@ -7,7 +7,7 @@
 
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::shifting_test {
 namespace {
 
 constexpr int across = 20;
@@ -114,4 +114,4 @@ TEST(Shifting, SaysWhereItDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::shifting_test

@@ -8,7 +8,7 @@
 
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::solver_test {
 namespace {
 
 // A block that collapses in a box, with a jet pouring in.
@@ -252,4 +252,4 @@ TEST(Solver, ImpossibleSetupsAreErrorsThatNameTheSetting) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::solver_test

@@ -9,7 +9,7 @@
 
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::thin_walls_test {
 namespace {
 
 constexpr double spacing = 0.03, reach = 2.5 * spacing;
@@ -156,4 +156,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& instance) { return instance.param.name; });
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::thin_walls_test

@@ -7,7 +7,7 @@
 
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::tight_walls_test {
 namespace {
 
 constexpr double spacing = 0.03;
@@ -539,4 +539,4 @@ TEST(MovingTightWalls, SheetThrustThroughFluid) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::tight_walls_test

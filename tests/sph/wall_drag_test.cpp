@@ -4,7 +4,7 @@
 #include "sph/walls/wall_drag.h"
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::wall_drag_test {
 namespace {
 
 constexpr double height = 0.04, speed = 1, time = 0.05, water = 1e-6;
@@ -90,4 +90,4 @@ TEST(WallDrag, WrongShareIsRefused) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::wall_drag_test

@@ -5,7 +5,7 @@
 
 #include "tests/sph/test_meshes.h"
 
-namespace flowskin::sph {
+namespace flowskin::sph::walls_test {
 namespace {
 
 TEST(Walls, HydrostaticBlockSettles) {
@@ -163,4 +163,4 @@ TEST(Walls, ViscousBodyFlowsDownSteps) {
 }
 
 }  // namespace
-}  // namespace flowskin::sph
+}  // namespace flowskin::sph::walls_test

@@ -16,7 +16,7 @@
 #include "tools/report/run_log.h"
 #include "tools/report/time_table.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::checkpoint_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -239,4 +239,4 @@ TEST(TimeTable, PartsSharesAndSecondsASimulatedSecond) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::checkpoint_test

@@ -11,7 +11,7 @@
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/report/compare_report.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::compare_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -206,4 +206,4 @@ TEST_F(CompareFiles, NoMethodIsHelpedByMaxSlip) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::compare_test

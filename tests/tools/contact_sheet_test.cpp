@@ -7,7 +7,7 @@
 #include "tools/render/labels.h"
 #include "tools/render/video.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::contact_sheet_test {
 namespace {
 
 constexpr Color white{255, 255, 255}, black{0, 0, 0};
@@ -134,4 +134,4 @@ TEST(Labels, LettersDiffer) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::contact_sheet_test

@@ -16,7 +16,7 @@
 #include "tools/experiments/ride.h"
 #include "tools/pipeline/tracker_bridge.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::experiments_test {
 namespace {
 
 scenes::Scene paper_scene(const std::string& name) {
@@ -147,4 +147,4 @@ TEST(Ride, AnUnknownMethodIsAnError) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::experiments_test

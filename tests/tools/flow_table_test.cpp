@@ -11,7 +11,7 @@
 #include "tools/experiments/test_flows.h"
 #include "tracking/velocity/velocity_method.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::flow_table_test {
 namespace {
 
 // Relative RMS velocity error at an effective radius of 2 spacings; at 3 spacings twice that.
@@ -92,4 +92,4 @@ TEST(FlowTable, BodiesAreAsDescribed) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::flow_table_test

@@ -7,7 +7,7 @@
 #include "tools/report/frames_csv.h"
 #include "tools/report/worst_frames.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::frame_statistics_test {
 namespace {
 
 class FramesCsv : public IoTest {};
@@ -146,4 +146,4 @@ TEST(WorstFrames, SayNothingWithoutASurface) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::frame_statistics_test

@@ -5,7 +5,7 @@
 #include "tools/textures/perceptual_color.h"
 #include "tools/textures/stroke_font.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::image_test {
 namespace {
 
 class ImageTest : public IoTest {};
@@ -207,4 +207,4 @@ TEST(PerceptualColor, KnownColours) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::image_test

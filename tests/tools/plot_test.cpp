@@ -11,7 +11,7 @@
 #include "tools/report/plot_axis.h"
 #include "tools/textures/image.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::plot_test {
 namespace {
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
@@ -183,4 +183,4 @@ TEST_F(PlotFiles, WrongInputAndPlacesAreErrors) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::plot_test

@@ -13,7 +13,7 @@
 #include "tools/render/sampling.h"
 #include "tools/render/trace_scene.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::render_parts_test {
 namespace {
 
 TEST(RenderSampling, EveryAlignedRunIsStratified) {
@@ -184,4 +184,4 @@ TEST(RenderTrace, FindsTheNearestHit) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::render_parts_test

@@ -17,7 +17,7 @@
 #include "tools/render/renderer.h"
 #include "tools/render/subject.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::render_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -432,4 +432,4 @@ TEST(Render, BadSettingsAreRefused) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::render_test

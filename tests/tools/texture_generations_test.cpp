@@ -13,7 +13,7 @@
 #include "tests/tools/io_fixture.h"
 #include "tests/tracking/mesh_test_shapes.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::texture_generations_test {
 namespace {
 
 /// The unit cube, n by n squares a face, faces not joined; `sheared` along x by `shear` times y.
@@ -390,4 +390,4 @@ TEST_F(TextureBlendFiles, BadWeightsAndCoordinatesAreNotWritten) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::texture_generations_test

@@ -5,7 +5,7 @@
 #include "tools/textures/texture_mapping.h"
 #include "tracking/mesh/mesh_check.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::textures_mapping_test {
 namespace {
 
 scenes::TextureSpec texture_of(const std::string& mapping, double tile_size = 0, const Vec3& axis = {0, 1, 0}) {
@@ -251,4 +251,4 @@ TEST(Dress, AddsWhatTheWritersNeed) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::textures_mapping_test

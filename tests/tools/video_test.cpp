@@ -14,7 +14,7 @@
 #include "tools/pipeline/picture_maker.h"
 #include "tools/render/video.h"
 
-namespace flowskin::tools {
+namespace flowskin::tools::video_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -134,4 +134,4 @@ TEST_F(Video, OfAFolderWithGapsIsNotMadeAndSaysHow) {
 }
 
 }  // namespace
-}  // namespace flowskin::tools
+}  // namespace flowskin::tools::video_test

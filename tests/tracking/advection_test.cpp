@@ -10,7 +10,7 @@
 #include "tracking/advection/particle_paths.h"
 #include "tracking/advection/projection.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::advection_test {
 namespace {
 
 using test::ball_of_particles;
@@ -203,4 +203,4 @@ TEST(Projection, FromAnywhereNearAJitteredBody) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::advection_test

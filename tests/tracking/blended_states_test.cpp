@@ -12,7 +12,7 @@
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/tracker.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::blended_states_test {
 namespace {
 
 using test::joined;
@@ -316,4 +316,4 @@ TEST(ParticlePaths, AParticleThatJumpsGoesHereAndComesThere) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::blended_states_test

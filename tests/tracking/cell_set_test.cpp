@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::cell_set_test {
 namespace {
 
 using Cell = CellSet::Cell;
@@ -83,4 +83,4 @@ TEST(CellSet, ComponentsHangTogetherAtCorners) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::cell_set_test

@@ -10,7 +10,7 @@
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/advection/projection.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::confidence_test {
 namespace {
 
 std::vector<Vec3> points_on(const MetaballField& field, const std::vector<Vec3>& starts) {
@@ -69,4 +69,4 @@ TEST(Confidence, IsZeroWhereTheFieldIsSilent) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::confidence_test

@@ -7,7 +7,7 @@
 
 #include "tests/tracking/field_test_bodies.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::curvature_test {
 namespace {
 
 using test::Random;
@@ -158,4 +158,4 @@ TEST(Curvature, ZeroGradientGivesZero) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::curvature_test

@@ -12,7 +12,7 @@
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::editable_mesh_test {
 namespace {
 
 using test::joined;
@@ -139,4 +139,4 @@ TEST(EditableMesh, FlipRefusesATriangleTurnedOver) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::editable_mesh_test

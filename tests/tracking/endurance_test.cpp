@@ -16,7 +16,7 @@
 #include "tracking/remeshing/remesh.h"
 #include "tracking/tracker.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::endurance_test {
 namespace {
 
 using test::ball_of_particles;
@@ -198,4 +198,4 @@ TEST(Endurance, ParticlesThatVanishAndAppearAreSurvived) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::endurance_test

@@ -19,7 +19,7 @@
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/self_intersections.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::extraction_test {
 namespace {
 
 using std::numbers::pi;
@@ -251,4 +251,4 @@ TEST(ExtractSurface, SameBytesAtAnyThreadCount) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::extraction_test

@@ -14,7 +14,7 @@
 #include "tracking/fairing/repair.h"
 #include "tracking/mesh/mesh_measures.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::fairing_test {
 namespace {
 
 constexpr double kEdge = 0.8;
@@ -198,4 +198,4 @@ TEST(Repair, UntanglesAFoldAndLeavesTheRest) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::fairing_test

@@ -13,7 +13,7 @@
 #include "common/hilbert.h"
 #include "tests/tracking/field_test_bodies.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::field_test {
 namespace {
 
 using test::lattice;
@@ -293,4 +293,4 @@ TEST(Field, HilbertCurveVisitsEveryCellOnceByUnitSteps) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::field_test

@@ -17,7 +17,7 @@
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/tracker.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::field_walls_test {
 namespace {
 
 using test::Random;
@@ -272,4 +272,4 @@ TEST(FieldWalls, BadOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::field_walls_test

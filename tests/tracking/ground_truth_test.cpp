@@ -11,7 +11,7 @@
 #include "tracking/ground_truth/mesh_errors.h"
 #include "tracking/tracker.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::ground_truth_test {
 namespace {
 
 using test::lattice;
@@ -183,4 +183,4 @@ TEST(MeshErrors, VelocityErrorsAreOfTheRightSize) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::ground_truth_test

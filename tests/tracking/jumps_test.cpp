@@ -8,7 +8,7 @@
 #include "tests/tracking/mesh_test_shapes.h"
 #include "tracking/tracker.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::jumps_test {
 namespace {
 
 constexpr double kFrame = 1.0 / 30;
@@ -83,4 +83,4 @@ TEST(Jumps, TheStreamGoesOnAroundThem) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::jumps_test

@@ -6,7 +6,7 @@
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/field/metaball_field.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::kernel_moments_test {
 namespace {
 
 TEST(KernelMoments, GiveTheRatesOfEveryAffineMotion) {
@@ -49,4 +49,4 @@ TEST(KernelMoments, AreZeroWhereNoParticleIsNear) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::kernel_moments_test

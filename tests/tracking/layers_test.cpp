@@ -9,7 +9,7 @@
 #include "tracking/material/material.h"
 #include "tracking/tracker.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::layers_test {
 namespace {
 
 constexpr double kEdge = 0.75;
@@ -150,4 +150,4 @@ TEST(Layers, BadOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::layers_test

@@ -7,7 +7,7 @@
 
 #include "tests/tracking/mesh_test_shapes.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::local_topology_test {
 namespace {
 
 const SparseGrid kGrid = SparseGrid::of_values({1, 1, 1}, {-1}, -1, 1);  // of spacing 1
@@ -53,4 +53,4 @@ TEST(LocalTopology, TheSameSurfaceMeshedOtherwiseDoesNotDiffer) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::local_topology_test

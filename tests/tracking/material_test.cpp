@@ -14,7 +14,7 @@
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/extract_surface.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::material_test {
 namespace {
 
 using test::ball_of_particles;
@@ -228,4 +228,4 @@ TEST(MaterialScatter, IsTheNoiseOfTheRestPositions) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::material_test

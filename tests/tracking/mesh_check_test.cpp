@@ -7,7 +7,7 @@
 
 #include "tests/tracking/mesh_test_shapes.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::mesh_check_test {
 namespace {
 
 using test::both;
@@ -113,4 +113,4 @@ TEST(MeshCheck, NamesBadAttributes) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::mesh_check_test

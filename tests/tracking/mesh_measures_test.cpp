@@ -11,7 +11,7 @@
 #include "tracking/mesh/editable_mesh.h"
 #include "tracking/mesh/mesh_check.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::mesh_measures_test {
 namespace {
 
 using std::numbers::pi;
@@ -176,4 +176,4 @@ TEST(ClosestPoint, LooksAtTheSideAskedFor) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::mesh_measures_test

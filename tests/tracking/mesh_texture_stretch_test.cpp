@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::mesh_texture_stretch_test {
 namespace {
 
 SurfaceMesh one_triangle() {
@@ -68,4 +68,4 @@ TEST(TextureStretch, DistortionIsTheWorseOfStretchAndSqueeze) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::mesh_texture_stretch_test

@@ -10,7 +10,7 @@
 
 #include "tests/tracking/field_test_bodies.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::moving_least_squares_test {
 namespace {
 
 using test::lattice;
@@ -180,4 +180,4 @@ TEST(MovingLeastSquares, ScalesWithTheScene) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::moving_least_squares_test

@@ -14,7 +14,7 @@
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/advection/projection.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::neighborhoods_test {
 namespace {
 
 using test::Random;
@@ -180,4 +180,4 @@ TEST(Neighborhoods, ProjectingTheMovedIsProjectingAll) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::neighborhoods_test

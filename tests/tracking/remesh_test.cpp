@@ -10,7 +10,7 @@
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::remesh_test {
 namespace {
 
 constexpr double kEdge = 0.75;  // spacing 1
@@ -166,4 +166,4 @@ TEST(Remesh, TargetsFollowTheCurvature) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::remesh_test

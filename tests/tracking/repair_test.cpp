@@ -19,7 +19,7 @@
 #include "tracking/repair/patch_mesh.h"
 #include "tracking/repair/replace_region.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::repair_test {
 namespace {
 
 using test::ball_of_particles;
@@ -447,4 +447,4 @@ TEST(BadTriangles, AreSeen) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::repair_test

@@ -13,7 +13,7 @@
 #include "tests/tracking/exact_intersections.h"
 #include "tests/tracking/mesh_test_shapes.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::self_intersections_test {
 namespace {
 
 using test::both;
@@ -362,4 +362,4 @@ TEST(SelfIntersections, DoNotDependOnNumbersPlaceOrThreads) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::self_intersections_test

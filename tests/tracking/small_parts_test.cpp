@@ -11,7 +11,7 @@
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/tracker.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::small_parts_test {
 namespace {
 
 using test::ball_of_particles;
@@ -131,4 +131,4 @@ TEST(SmallParts, MakeBallLeavesARingAsItIs) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::small_parts_test

@@ -12,7 +12,7 @@
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/repair/change_topology.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::strays_test {
 namespace {
 
 using test::ball_of_particles;
@@ -174,4 +174,4 @@ TEST(SurfaceCounts, AgreeWhereOnlyPartsBelowACellDiffer) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::strays_test

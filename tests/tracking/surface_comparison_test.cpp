@@ -13,7 +13,7 @@
 #include "tracking/mesh/hausdorff.h"
 #include "tracking/mesh/mesh_measures.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::surface_comparison_test {
 namespace {
 
 using std::numbers::pi;
@@ -167,4 +167,4 @@ TEST(MeshShares, OfAnglesAndEdges) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::surface_comparison_test

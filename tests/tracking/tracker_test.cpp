@@ -13,7 +13,7 @@
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::tracker_test {
 namespace {
 
 using test::ball_of_particles;
@@ -263,4 +263,4 @@ TEST(Tracker, RefusesBadParticlesAndStaysAsItWas) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::tracker_test

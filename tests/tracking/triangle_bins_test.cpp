@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::triangle_bins_test {
 namespace {
 
 Box random_box(std::mt19937& random, double largest) {
@@ -46,4 +46,4 @@ TEST(TriangleBins, EmptyOnesAreNearNothing) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::triangle_bins_test

@@ -16,7 +16,7 @@
 #include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/velocity_method.h"
 
-namespace flowskin::tracking {
+namespace flowskin::tracking::velocity_test {
 namespace {
 
 using test::lattice;
@@ -392,4 +392,4 @@ TEST(Velocity, OneParticleIsFollowed) {
 }
 
 }  // namespace
-}  // namespace flowskin::tracking
+}  // namespace flowskin::tracking::velocity_test

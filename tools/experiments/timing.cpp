@@ -40,7 +40,7 @@ struct StepTime {
   double without_fairing() const { return velocity + projection; }
 };
 
-double median(std::vector<double> values) {
+double median_of(std::vector<double> values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -73,7 +73,7 @@ StepTime time_steps(const scenes::Scene& scene, const tracking::SurfaceMesh& sta
     projecting.push_back(1e3 * (projected - moved));
     fairing.push_back(1e3 * (faired - projected));
   }
-  return {int(positions.size()), median(velocity), median(projecting), median(fairing)};
+  return {int(positions.size()), median_of(velocity), median_of(projecting), median_of(fairing)};
 }
 
 Plot bars(const PaperRun& run, const std::vector<StepTime>& times) {

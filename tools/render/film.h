@@ -17,7 +17,7 @@ struct Sample {
   Vec3f point{0, 0, 0};      ///< Place and
   Vec3f normal{0, 0, 0};     ///< normal of the surface,
   float spacing = 0;         ///< distance to the points of the neighbouring pixels there (m),
-  std::uint32_t object = 0;  ///< and which surface it is; `no_object` for the backdrop.
+  std::uint32_t object = 0;  ///< and which surface it is; `kNoObject` for the backdrop.
 };
 inline constexpr std::uint32_t kNoObject = 0;
 

@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "common/errors.h"
 
 namespace flowskin::tools {
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 float smooth_step(float from, float to, float value) {
   const float t = std::clamp((value - from) / (to - from), 0.0f, 1.0f);

@@ -1,10 +1,14 @@
 // The light of the pictures: a sun of some size, a sky, and the ground that reflects both.
 #pragma once
 
+#include <numbers>
+
 #include "scenes/scene.h"
 #include "tools/frame_data.h"
 
 namespace flowskin::tools {
+
+inline constexpr float kPi = std::numbers::pi_v<float>;
 
 /// Light arriving from all sides. Radiances are in units in which a white surface in full light has about 1.
 struct Lighting {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "common/errors.h"
 #include "tools/render/camera.h"
@@ -17,22 +16,22 @@
 #include "tools/render/trace_scene.h"
 
 namespace flowskin::tools {
-namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-// Which surface a sample lies on; walls follow from first_wall on.
-constexpr std::uint32_t kGroundObject = 1, kSubjectObject = 2, kFirstWall = 3;
 
 // A sample of the scene without its subject: the same in every frame, so it is traced once and kept.
 struct StaticSample {
-  float distance = kInfinity;
+  float distance = std::numeric_limits<float>::infinity();
   std::array<std::int16_t, 3> normal{0, 0, 0};  // times 32767
   std::uint16_t object = kNoObject;
   bool sees_sun = false;      // along this sample's direction
   std::uint8_t sees_sky = 0;  // a bit for each of its directions
 };
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Which surface a sample lies on; walls follow from kFirstWall on.
+constexpr std::uint32_t kGroundObject = 1, kSubjectObject = 2, kFirstWall = 3;
 
 // Directions towards the sky for each sample; one suffices where a pixel has many samples.
 int sky_rays_for(int samples) { return samples <= 16 ? 2 : 1; }

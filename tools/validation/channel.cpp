@@ -12,20 +12,20 @@ namespace {
 
 using sph::Vec3;
 
-constexpr double kWidth = 1e-3, kViscosity = 1e-6, kTopSpeed = 1.25e-5;  // m, m^2/s, m/s, all as in [MFZ97]
-constexpr double kTimes[] = {0.0225, 0.045, 0.1125, 1.0};                // L^2 / nu
+constexpr double kChannelWidth = 1e-3, kChannelViscosity = 1e-6, kChannelSpeed = 1.25e-5;  // m, m^2/s, m/s, all as in [MFZ97]
+constexpr double kChannelTimes[] = {0.0225, 0.045, 0.1125, 1.0};                // L^2 / nu
 
 sph::SimulationSetup channel(const ChannelFlow& flow, int across) {
-  const double spacing = kWidth / across, length = 6 * spacing;
+  const double spacing = kChannelWidth / across, length = 6 * spacing;
   sph::SimulationSetup setup =
-      flow_setup(spacing, kViscosity, {flow.force * kViscosity * kTopSpeed / (kWidth * kWidth), 0, 0});
-  setup.settings.max_speed = kTopSpeed;
+      flow_setup(spacing, kChannelViscosity, {flow.force * kChannelViscosity * kChannelSpeed / (kChannelWidth * kChannelWidth), 0, 0});
+  setup.settings.max_speed = kChannelSpeed;
   // Steps of the explicit scheme, so that the error is that of space alone.
   setup.settings.viscosity_solver = sph::ViscositySolver::explicit_steps;
   add_endless_floor(length, setup);
-  setup.bodies.push_back(block_body({0, 0, 0}, {length, kWidth, length}));
-  setup.boundaries.push_back(plane_wall({0, kWidth, 0}, {length, 0, 0}, {0, 0, length}, 0));
-  setup.boundaries.back().surface_velocity = {flow.wall_speed * kTopSpeed, 0, 0};
+  setup.bodies.push_back(block_body({0, 0, 0}, {length, kChannelWidth, length}));
+  setup.boundaries.push_back(plane_wall({0, kChannelWidth, 0}, {length, 0, 0}, {0, 0, length}, 0));
+  setup.boundaries.back().surface_velocity = {flow.wall_speed * kChannelSpeed, 0, 0};
   return setup;
 }
 
@@ -42,9 +42,9 @@ Profile profile(const ChannelFlow& flow, const sph::Solver& solver, double time)
             [&](std::size_t a, std::size_t b) { return state.positions[a].y() < state.positions[b].y(); });
   Profile result;
   for (const std::size_t i : order) {
-    const double y = state.positions[i].y() / kWidth;
+    const double y = state.positions[i].y() / kChannelWidth;
     result.y.push_back(y);
-    result.computed.push_back(state.velocities[i].x() / kTopSpeed);
+    result.computed.push_back(state.velocities[i].x() / kChannelSpeed);
     result.reference.push_back(flow.reference(y, time));
   }
   return result;
@@ -58,29 +58,29 @@ ValidationResult run_channel(const ChannelFlow& flow, double resolution) {
   Plot speeds = line_plot(flow.title, "y / L", "u / V0", {});
   Plot errors = line_plot("Convergence", "particles across", "relative L2 error", {});
   errors.log_x = errors.log_y = true;
-  errors.series.resize(std::size(kTimes));
+  errors.series.resize(std::size(kChannelTimes));
   std::vector<double> log_spacing, log_error;
   const int counts[] = {10, 20, 40};
   for (const int count : counts) {
     const int across = static_cast<int>(std::lround(count * resolution));
     sph::Solver solver(channel(flow, across));
     double worst = 0;
-    for (std::size_t k = 0; k < std::size(kTimes); ++k) {
-      solver.advance_to(kTimes[k] * kWidth * kWidth / kViscosity);
-      const Profile p = profile(flow, solver, kTimes[k]);
+    for (std::size_t k = 0; k < std::size(kChannelTimes); ++k) {
+      solver.advance_to(kChannelTimes[k] * kChannelWidth * kChannelWidth / kChannelViscosity);
+      const Profile p = profile(flow, solver, kChannelTimes[k]);
       const double error = relative_l2(p.computed, p.reference);
       worst = std::max(worst, error);
-      errors.series[k].name = fmt::format("t = {} L²/ν", kTimes[k]);
+      errors.series[k].name = fmt::format("t = {} L²/ν", kChannelTimes[k]);
       errors.series[k].x.push_back(across);
       errors.series[k].y.push_back(error);
       for (std::size_t i = 0; i < p.y.size(); ++i)
-        result.data.add({across, kTimes[k], p.y[i], p.computed[i], p.reference[i]});
+        result.data.add({across, kChannelTimes[k], p.y[i], p.computed[i], p.reference[i]});
       if (count != counts[2]) continue;
       result.figures.push_back(at_most(
-          fmt::format("relative L2 error of the speed; {} across; t = {} L^2/nu", across, kTimes[k]), error, 0.02));
+          fmt::format("relative L2 error of the speed; {} across; t = {} L^2/nu", across, kChannelTimes[k]), error, 0.02));
       speeds.series.push_back({k == 0 ? "series" : "", p.y, p.reference, 0});
       speeds.series.push_back(
-          {fmt::format("computed, t = {} L²/ν", kTimes[k]), p.y, p.computed, static_cast<int>(k) + 1});
+          {fmt::format("computed, t = {} L²/ν", kChannelTimes[k]), p.y, p.computed, static_cast<int>(k) + 1});
     }
     log_spacing.push_back(-std::log(across));
     log_error.push_back(std::log(worst));

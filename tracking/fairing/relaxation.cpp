@@ -12,7 +12,7 @@ namespace flowskin::tracking {
 namespace {
 
 constexpr double kShare = 0.5;
-constexpr double kLargestMove = 0.3;  // of the shortest edge at the vertex
+constexpr double kLargestRelaxation = 0.3;  // of the shortest edge at the vertex
 constexpr double kInvertedCosine = 0.2;
 constexpr double kRidge = 0.05;  // slope of the volume against the normal
 constexpr int kTakeBackRounds = 8;
@@ -54,7 +54,7 @@ Vec3 relaxed_position(int vertex, const MeshAdjacency& topology, const std::vect
   Vec3 move = kShare / static_cast<double>(ring.size()) * mean;
   move -= normal * normal.dot(move);
   if (ridges == Ridges::kept) move = along_ridge(move, volume_gradient(vertex, topology, triangles, positions), normal);
-  const double limit = kLargestMove * std::sqrt(shortest), length = move.norm();
+  const double limit = kLargestRelaxation * std::sqrt(shortest), length = move.norm();
   return length > limit ? Vec3(x + limit / length * move) : Vec3(x + move);
 }
 

@@ -24,20 +24,6 @@ constexpr double far_away = 1e150;
 
 double square(double a) { return a * a; }
 
-/// nanoflann's view of the block centres.
-struct BlockCentres {
-  std::vector<Vec3> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][static_cast<Eigen::Index>(axis)]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box& /*box*/) const {
-    return false;
-  }
-};
-
-using BlockTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, BlockCentres>, BlockCentres, 3, int>;
-
 /// nanoflann's result set: collects block numbers within a radius, without distances and without sorting.
 class BlocksWithin {
  public:
@@ -87,12 +73,25 @@ int write_near(const GroupBoxes& boxes, int index, const Vec3& x, double limit, 
 }  // namespace
 
 struct ParticleBlocks::Tree {
+  /// nanoflann's view of the block centres.
+  struct Centres {
+    std::vector<Vec3> points;
+    std::size_t kdtree_get_point_count() const { return points.size(); }
+    double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][static_cast<Eigen::Index>(axis)]; }
+    template <class Box>
+    bool kdtree_get_bbox(Box& /*box*/) const {
+      return false;
+    }
+  };
+
+  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Centres>, Centres, 3, int>;
+
   explicit Tree(std::vector<Vec3> centres)
       : points{std::move(centres)}, index(3, points, nanoflann::KDTreeSingleIndexAdaptorParams(tree_leaf_size)) {
     index.buildIndex();
   }
-  BlockCentres points;
-  BlockTree index;
+  Centres points;
+  Index index;
 };
 
 ParticleBlocks::ParticleBlocks(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, double reach) {

@@ -11,7 +11,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kSameSide = 0.3;       // cosine between a marker's normal and that of the mesh beside it
+constexpr double kMarkerSide = 0.3;     // cosine between a marker's normal and that of the mesh beside it
 constexpr double kSameMaterial = 1e-6;  // of the reach: a vertex whose rest position has moved less is what it was
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -50,7 +50,7 @@ void measure_on_surface(const SurfaceMesh& mesh, const Markers& markers, double 
 #pragma omp parallel for schedule(dynamic, 64)
   for (int i = 0; i < static_cast<int>(markers.ids.size()); ++i) {
     if (markers.left[i]) continue;
-    const MeshPoint here = in_space.closest(markers.positions[i], reach, markers.normals[i], kSameSide);
+    const MeshPoint here = in_space.closest(markers.positions[i], reach, markers.normals[i], kMarkerSide);
     if (here.triangle >= 0)
       distances.texture[i] =
           (interpolated(mesh.rest_positions, mesh.triangles, here) - markers.rest_positions[i]).norm();

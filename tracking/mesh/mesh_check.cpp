@@ -74,11 +74,11 @@ void check_duplicates(const std::vector<Vec3>& positions, std::vector<std::strin
 
 // Every directed edge once, and its opposite once.
 void check_edges(const std::vector<Triangle>& triangles, std::vector<std::string>& problems) {
-  struct Side {
+  struct DirectedEdge {
     int low, high, triangle;
     bool upward;
   };
-  std::vector<Side> sides;
+  std::vector<DirectedEdge> sides;
   sides.reserve(3 * triangles.size());
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     for (int corner = 0; corner < 3; ++corner) {
@@ -87,7 +87,7 @@ void check_edges(const std::vector<Triangle>& triangles, std::vector<std::string
       sides.push_back({std::min(a, b), std::max(a, b), t, a < b});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::sort(sides.begin(), sides.end(), [](const DirectedEdge& a, const DirectedEdge& b) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
   });
   Fault open("open edges (in one triangle only)");

@@ -17,7 +17,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr int kRounds = 14;
+constexpr int kRepairRounds = 14;
 constexpr double kDust = 0.05;      // volume of a component that is not worth its triangles, in cells
 constexpr double kSmall = 8;        // volume of a part that is compared by its true size, in cells
 constexpr int kAttempts = 30;       // to fit a region in, until it has grown to where it does
@@ -296,7 +296,7 @@ TopologyReport change_topology(const MetaballField& field, const Particles& part
   TopologyReport report;
   report.expected = counts_of(expected.positions, expected.triangles, least, edge_length);
   PlacesToMend to_mend(fresh, expected, settings.depth);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRepairRounds; ++round) {
     std::vector<CellSet> regions = to_mend.find(mesh, projection);
     if (regions.empty()) {
       report.counts = counts_of(mesh.positions, mesh.triangles, least, edge_length);

@@ -11,10 +11,10 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kSameSide = 0.3;  // cosine between a triangle's normal and the one asked for
-constexpr double kAtVertex = 0.7;  // weight of a corner from which on it is moved
-constexpr double kAtEdge = 0.15;   // weight of a corner up to which its opposite side is split
-constexpr double kUpright = 0.3;   // cosine of the largest turn of a triangle when a corner moves
+constexpr double kFacesWanted = 0.3;  // cosine between a triangle's normal and the one asked for
+constexpr double kAtVertex = 0.7;     // weight of a corner from which on it is moved
+constexpr double kAtEdge = 0.15;      // weight of a corner up to which its opposite side is split
+constexpr double kUpright = 0.3;      // cosine of the largest turn of a triangle when a corner moves
 constexpr int kFlipsPerEdge = 40;
 
 // Twice the signed area of a triangle seen against the normal.
@@ -83,7 +83,7 @@ PatchMesh::Place PatchMesh::locate(const Vec3& x, const Vec3& normal, double rea
     const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
     if (((low - x).array() > nearest).any() || ((x - high).array() > nearest).any()) continue;
     const Vec3 area = doubled_area_vector(positions_, triangles_[t]);
-    if (!(area.dot(normal) > kSameSide * area.norm())) continue;
+    if (!(area.dot(normal) > kFacesWanted * area.norm())) continue;
     std::array<double, 3> weights{};
     const double distance = closest_on_triangle(x, corners, weights);
     if (!(distance < nearest)) continue;

@@ -10,7 +10,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kSameSide = 0.5;
+constexpr double kSheetSide = 0.5;
 constexpr double kSurelyNear = 0.1;  // cells, to first order
 
 void add_cell_of(const SparseGrid& grid, const Vec3& x, std::vector<CellSet::Cell>& cells) {
@@ -111,7 +111,7 @@ void add_strays(const SparseGrid& grid, double reach, const SurfaceGeometry& sur
   const ClosestPointTree tree(other.positions, other.triangles);
   const std::vector<int> far = where_true(samples.count(), [&](int i) {
     const Vec3 x = samples.place(i), place = grid.coordinates(x);
-    return meets(where, place, place) && !tree.is_near(x, reach, samples.normal(i), kSameSide);
+    return meets(where, place, place) && !tree.is_near(x, reach, samples.normal(i), kSheetSide);
   });
   for (int i : far) add_cell_of(grid, samples.place(i), cells);
 }
@@ -132,7 +132,7 @@ void Strays::measure(const SparseGrid& grid, double farthest, const SurfaceGeome
 #pragma omp parallel for schedule(dynamic, 256)
   for (int i = 0; i < static_cast<int>(samples.count()); ++i) {
     const Vec3 x = samples.place(i);
-    const MeshPoint point = tree.closest(x, farthest, samples.normal(i), kSameSide);
+    const MeshPoint point = tree.closest(x, farthest, samples.normal(i), kSheetSide);
     places_[first + i] = {grid.coordinates(x),
                           point.triangle < 0 ? std::numeric_limits<double>::infinity() : point.distance};
   }

@@ -12,7 +12,7 @@ namespace {
 constexpr double least_spread = 1e-3;
 
 /// Particles that a linear flow always fits.
-constexpr int flow_unknowns = 4;
+constexpr int affine_unknowns = 4;
 /// Square of the share of the speed below which differences of velocity are rounding.
 constexpr double least_spread_of_speed = 1e-20;
 
@@ -99,7 +99,7 @@ LocalFlow flow_of(const std::vector<int>& found, const MetaballField& field, con
     all += sample.weight * sample.velocity.squaredNorm();
   }
   // Of n samples with independent errors, n - 4 are left to show them.
-  const double freedom = 1.0 / std::max(1, flow.neighbors - flow_unknowns) * flow.neighbors;
+  const double freedom = 1.0 / std::max(1, flow.neighbors - affine_unknowns) * flow.neighbors;
   flow.gradient_error2 =
       freedom * rest * weights2 * inverse.trace() / (field.settings().radius * field.settings().radius);
   // Velocities that differ by rounding alone have no spread.

@@ -7,7 +7,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace bingham_slump {
 
 using sph::Vec3;
 
@@ -111,11 +111,11 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace bingham_slump
 
 ValidationCase bingham_slump_case() {
   return {"bingham_slump", "a block of mud that slumps and stops, against the balance of pressure and yield stress",
-          false, run};
+          false, bingham_slump::run};
 }
 
 }  // namespace flowskin::tools

@@ -10,7 +10,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace conservation {
 
 using sph::Vec3;
 
@@ -90,10 +90,11 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace conservation
 
 ValidationCase conservation_case() {
-  return {"conservation", "two bodies collide without walls: momentum, angular momentum, energy", true, run};
+  return {"conservation", "two bodies collide without walls: momentum, angular momentum, energy", true,
+          conservation::run};
 }
 
 }  // namespace flowskin::tools

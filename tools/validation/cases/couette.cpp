@@ -5,7 +5,7 @@
 #include "tools/validation/channel.h"
 
 namespace flowskin::tools {
-namespace {
+namespace couette {
 
 // Series solution [MFZ97, Eq. 20], u / V0 with V0 the speed of the plate.
 double series_speed(double y, double t) {
@@ -17,13 +17,13 @@ double series_speed(double y, double t) {
   return u;
 }
 
-}  // namespace
+}  // namespace couette
 
 ValidationCase couette_case() {
   ChannelFlow flow;
   flow.title = "Plane Couette flow";
   flow.wall_speed = 1;
-  flow.reference = series_speed;
+  flow.reference = couette::series_speed;
   return {"couette", "flow between plates, one of which starts to move, against the series of Morris et al. 1997", true,
           [flow](double resolution) { return run_channel(flow, resolution); }};
 }

@@ -17,7 +17,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace dam_break {
 
 using sph::Vec3;
 
@@ -130,10 +130,11 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace dam_break
 
 ValidationCase dam_break_case() {
-  return {"dam_break", "front of a collapsing column of water against Koshizuka and Oka, Martin and Moyce", false, run};
+  return {"dam_break", "front of a collapsing column of water against Koshizuka and Oka, Martin and Moyce", false,
+          dam_break::run};
 }
 
 }  // namespace flowskin::tools

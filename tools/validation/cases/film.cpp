@@ -6,7 +6,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace film {
 
 using sph::Vec3;
 
@@ -71,8 +71,10 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace film
 
-ValidationCase film_case() { return {"film", "a film flowing down an incline against Nusselt's parabola", true, run}; }
+ValidationCase film_case() {
+  return {"film", "a film flowing down an incline against Nusselt's parabola", true, film::run};
+}
 
 }  // namespace flowskin::tools

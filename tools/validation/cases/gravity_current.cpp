@@ -8,7 +8,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace gravity_current {
 
 using sph::Vec3;
 
@@ -98,10 +98,11 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace gravity_current
 
 ValidationCase gravity_current_case() {
-  return {"gravity_current", "a viscous drop spreads on a plane, radius against Huppert 1982", false, run};
+  return {"gravity_current", "a viscous drop spreads on a plane, radius against Huppert 1982", false,
+          gravity_current::run};
 }
 
 }  // namespace flowskin::tools

@@ -6,7 +6,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace hydrostatic {
 
 using sph::Vec3;
 
@@ -73,10 +73,11 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace hydrostatic
 
 ValidationCase hydrostatic_case() {
-  return {"hydrostatic", "a column at rest in a box against p = rho g (H - y); its motion dies out", true, run};
+  return {"hydrostatic", "a column at rest in a box against p = rho g (H - y); its motion dies out", true,
+          hydrostatic::run};
 }
 
 }  // namespace flowskin::tools

@@ -5,7 +5,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace oscillating_drop {
 
 constexpr double kViscosity = 5e-4, kStretch = 1.15, kPeriods = 2.5;
 
@@ -50,10 +50,11 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace oscillating_drop
 
 ValidationCase oscillating_drop_case() {
-  return {"oscillating_drop", "drop under surface tension, two spacings: Rayleigh's frequency of mode 2", false, run};
+  return {"oscillating_drop", "drop under surface tension, two spacings: Rayleigh's frequency of mode 2", false,
+          oscillating_drop::run};
 }
 
 }  // namespace flowskin::tools

@@ -9,7 +9,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace poiseuille {
 
 // Series solution [MFZ97, Eq. 21], u / V0 with V0 = F L^2 / (8 nu), the speed in the middle at the end.
 double series_speed(double y, double t) {
@@ -21,13 +21,13 @@ double series_speed(double y, double t) {
   return u;
 }
 
-}  // namespace
+}  // namespace poiseuille
 
 ValidationCase poiseuille_case() {
   ChannelFlow flow;
   flow.title = "Plane Poiseuille flow";
   flow.force = 8;  // F L^2 / (nu V0)
-  flow.reference = series_speed;
+  flow.reference = poiseuille::series_speed;
   return {"poiseuille", "flow between plates under a force, from rest, against the series of Morris et al. 1997", true,
           [flow](double resolution) { return run_channel(flow, resolution); }};
 }

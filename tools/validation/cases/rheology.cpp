@@ -7,7 +7,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace rheology {
 
 using sph::Vec3;
 
@@ -109,10 +109,11 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace rheology
 
 ValidationCase rheology_case() {
-  return {"rheology", "films of shear-thinning, yielding and layered fluids against their steady profiles", true, run};
+  return {"rheology", "films of shear-thinning, yielding and layered fluids against their steady profiles", true,
+          rheology::run};
 }
 
 }  // namespace flowskin::tools

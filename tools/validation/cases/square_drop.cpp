@@ -5,7 +5,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace square_drop {
 
 ValidationResult run(double resolution) {
   ValidationResult result;
@@ -47,10 +47,11 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace square_drop
 
 ValidationCase square_drop_case() {
-  return {"square_drop", "cube of fluid becomes round and keeps its volume; Laplace's pressure", false, run};
+  return {"square_drop", "cube of fluid becomes round and keeps its volume; Laplace's pressure", false,
+          square_drop::run};
 }
 
 }  // namespace flowskin::tools

@@ -10,7 +10,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace symmetry {
 
 using sph::Vec3;
 
@@ -74,11 +74,11 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace symmetry
 
 ValidationCase symmetry_case() {
   return {"symmetry", "a drop that falls askew on a plate, against its mirror image and turned by a quarter", true,
-          run};
+          symmetry::run};
 }
 
 }  // namespace flowskin::tools

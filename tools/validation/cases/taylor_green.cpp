@@ -8,7 +8,7 @@
 #include "tools/validation/validation_case.h"
 
 namespace flowskin::tools {
-namespace {
+namespace taylor_green {
 
 using sph::Vec3;
 
@@ -85,10 +85,11 @@ ValidationResult run(double resolution) {
   return result;
 }
 
-}  // namespace
+}  // namespace taylor_green
 
 ValidationCase taylor_green_case() {
-  return {"taylor_green", "vortices in a periodic box die out at the rate of the theory, Re 10 and 100", false, run};
+  return {"taylor_green", "vortices in a periodic box die out at the rate of the theory, Re 10 and 100", false,
+          taylor_green::run};
 }
 
 }  // namespace flowskin::tools
