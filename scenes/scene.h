@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sph/solver.h"
+#include "tracking/tracker.h"
 
 namespace flowskin::scenes {
 
@@ -58,8 +59,9 @@ struct MotionSpec {
 struct RecordedSpec {
   /// Files, patterns such as run/particles/frame_*.ply, folders, or one .pvd; relative to the scene file.
   std::vector<std::string> files;
-  double frame_interval = 0;      ///< s between files; 0: the times in the files, else 1/30 s
-  std::string ids = "automatic";  ///< automatic, order, none (docs/track.md)
+  double frame_interval = 0;  ///< s between files; 0: the times in the files, else 1/30 s
+  enum class Ids { automatic, order, none };
+  Ids ids = Ids::automatic;  ///< docs/track.md
 };
 
 struct ParticlesSpec {
@@ -72,28 +74,21 @@ struct ParticlesSpec {
   RecordedSpec recorded;        ///< recorded
 };
 
-struct TrackingSpec {
+/// What a scene says for the best velocity method that its particles allow.
+inline constexpr const char* automatic_velocity = "auto";
+
+/// The tracker's own settings and what a scene says about tracking besides. Here the tracker's lengths count in
+/// spacings and its volumes in cubes of them, as in the scene file: settings_in_metres() gives what the tracker takes.
+struct TrackingSpec : tracking::TrackerSettings {
+  TrackingSpec() {
+    velocity = automatic_velocity;
+    field.radius = 2.5;
+    edge_length = 0.75;
+    max_slip = -1;  // negative: max_slip_of() chooses
+  }
   bool enabled = true;
-  std::string velocity = "auto";     ///< A method, or auto: the best one for these particles.
-  std::string integrator = "rk2";    ///< euler, rk2, rk4
-  int steps_per_frame = 2;           ///< Particle states between two frames, one tracker step each.
-  double max_motion = 0.25;          ///< in effective radii
-  double radius = 2.5;               ///< Effective radius of a particle, in spacings.
-  double threshold = 0;              ///< 0: the one that puts a flat surface half a spacing outside the particles
-  double wall_share = 0.45;          ///< Field of a bare wall, in thresholds; 0: the field knows no walls.
-  double edge_length = 0.75;         ///< Edge length of an extracted mesh, in spacings.
-  double curvature_edges = 0;        ///< Edges at most this multiple of the smaller radius of curvature; 0: all alike.
-  double smallest_part = 0;          ///< Parts of fluid or air that enclose less are small; in cubes of the spacing.
-  std::string small_parts = "keep";  ///< keep, drop, balls
-  int fairing_iterations = 10;
-  double fairing_stiffness = 0.3;            ///< 0 to 1
-  std::string fairing_springs = "constant";  ///< constant, variable
-  bool confidence = false;                   ///< Write how well the field determines the velocity.
-  bool remeshing = true;                     ///< Split, collapse and flip edges of a stretching surface.
-  double max_slip = -1;                      ///< Of the texture off its particles, in spacings; 0: any distance;
-                                             ///< negative: max_slip_of() chooses.
-  bool topology = true;
-  bool guard = true;
+  int steps_per_frame = 2;  ///< Particle states between two frames, one tracker step each.
+  bool confidence = false;  ///< Write how well the field determines the velocity.
 };
 
 struct TextureSpec {

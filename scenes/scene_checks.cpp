@@ -1,11 +1,15 @@
 #include "scenes/scene_checks.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
 
 #include "common/errors.h"
 #include "scenes/io/obj_reader.h"
+#include "scenes/nearest_name.h"
 
 namespace flowskin::scenes {
 namespace {

@@ -1,7 +1,8 @@
 // What no single key can tell: keys that contradict each other, and the files that a scene names.
 #pragma once
 
-#include "scenes/scene_objects.h"
+#include "scenes/scene.h"
+#include "scenes/schema/objects.h"
 
 namespace flowskin::scenes {
 

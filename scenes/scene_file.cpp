@@ -5,6 +5,7 @@
 
 #include "common/errors.h"
 #include "scenes/scene_checks.h"
+#include "scenes/schema/schema.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -37,13 +38,14 @@ void make_names_absolute(Scene& scene) {
 
 }  // namespace
 
-Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& directory,
-                  const SceneVocabulary& vocabulary) {
+Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& directory) {
   const JsonNode root = parse_json(text, name);
   Problems problems(name, text);
   Scene scene;
   scene.directory = std::filesystem::absolute(directory.empty() ? "." : directory).lexically_normal().string();
-  read_object(root, scene_table(vocabulary), "", scene, problems);
+  KeyTable keys;
+  add_scene_keys(keys, scene);
+  read_object(root, keys, "", problems);
   problems.throw_if_any();
   scene.solver.spacing = scene.particles.spacing;
   check_consistency(scene, root, problems);
@@ -53,16 +55,23 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& file, const SceneVocabulary& vocabulary) {
-  return parse_scene(read_text(file), file.string(), file.parent_path(), vocabulary);
+Scene read_scene(const std::filesystem::path& file) {
+  return parse_scene(read_text(file), file.string(), file.parent_path());
 }
 
 std::string write_scene(const Scene& scene) {
   Scene absolute = scene;
   make_names_absolute(absolute);
-  return write_object(absolute, scene_table({}), 0) + "\n";
+  KeyTable keys;
+  add_scene_keys(keys, absolute);
+  return write_object(keys, 0) + "\n";
 }
 
-std::vector<SceneKey> scene_keys() { return document(scene_table({})); }
+std::vector<SceneKey> scene_keys() {
+  Scene untouched;
+  KeyTable keys;
+  add_scene_keys(keys, untouched);
+  return document(keys);
+}
 
 }  // namespace flowskin::scenes

@@ -9,11 +9,6 @@
 
 namespace flowskin::scenes {
 
-/// Names that the scene file may use but this library does not know, given by the program.
-struct SceneVocabulary {
-  std::vector<std::string> velocity_methods;
-};
-
 /// One key of the scene file, for documentation and for `flowskin scene --keys`.
 struct SceneKey {
   std::string path;           ///< such as "fluid.viscosity" or "bodies[].radius"
@@ -25,10 +20,9 @@ struct SceneKey {
 
 /// @throws InputError naming the file, the key and its place (line), what was expected and, for an unknown key or
 /// value, the nearest valid one. Meshes that the scene names are read and placed.
-Scene read_scene(const std::filesystem::path& file, const SceneVocabulary& vocabulary);
+Scene read_scene(const std::filesystem::path& file);
 /// The same from text; `name` stands for the file in messages, `directory` is where relative names start.
-Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& directory,
-                  const SceneVocabulary& vocabulary);
+Scene parse_scene(const std::string& text, const std::string& name, const std::filesystem::path& directory);
 /// The scene with every key written out, readable by read_scene; file names are written absolute, so that the file can
 /// stand anywhere.
 std::string write_scene(const Scene& scene);

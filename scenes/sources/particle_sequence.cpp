@@ -47,7 +47,7 @@ class SequenceOpener {
     const ParticleTable table = read_particle_table(sequence_.files.front());
     sequence_.first = read_particles(sequence_.files.front());
     const bool wants_times = file_times_.empty() && spec_.frame_interval == 0 && table.time.has_value();
-    const bool wants_ids = spec_.ids == "automatic" && !sequence_.first.has_ids;
+    const bool wants_ids = spec_.ids == RecordedSpec::Ids::automatic && !sequence_.first.has_ids;
     const Census census = wants_times || wants_ids ? look_at_all() : Census{};
     settle_times(wants_times ? census.times : std::vector<double>{}, table.time.has_value());
     settle_ids(census);
@@ -157,9 +157,9 @@ class SequenceOpener {
 
   void settle_ids(const Census& census) {
     using Ids = ParticleSequence::Ids;
-    if (spec_.ids == "none") {
+    if (spec_.ids == RecordedSpec::Ids::none) {
       sequence_.ids = Ids::none;
-    } else if (spec_.ids == "order") {
+    } else if (spec_.ids == RecordedSpec::Ids::order) {
       sequence_.ids = Ids::order;
     } else if (!sequence_.first.has_ids) {
       sequence_.ids = Ids::none;

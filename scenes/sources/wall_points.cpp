@@ -17,7 +17,7 @@ void append(const sph::TriangleMesh& mesh, sph::TriangleMesh& whole) {
 }  // namespace
 
 tracking::Walls sample_walls(const Scene& scene) {
-  if (!scene.tracking.enabled || !(scene.tracking.wall_share > 0)) return {};
+  if (!scene.tracking.enabled || !(scene.tracking.field.wall_share > 0)) return {};
   const double spacing = scene.particles.spacing;
   tracking::Walls resting, moving;
   const auto add = [spacing](const sph::TriangleMesh& mesh, const KeyframeMotion& motion, tracking::Walls& walls) {

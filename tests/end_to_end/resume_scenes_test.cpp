@@ -54,9 +54,9 @@ struct Course {
 
   explicit Course(const Scene& scene) : source(scenes::make_source(scene)) {
     Scene with_method = scene;
-    with_method.tracking.velocity = tools::velocity_method_for(scene.tracking.velocity, source->state());
-    tracker =
-        std::make_unique<tracking::Tracker>(tools::tracker_settings(with_method), tools::to_particles(source->state()));
+    with_method.tracking.velocity = scenes::velocity_method_for(scene.tracking.velocity, source->state());
+    tracker = std::make_unique<tracking::Tracker>(scenes::settings_in_metres(with_method),
+                                                  tools::to_particles(source->state()));
   }
   void advance(double time) {
     source->advance_to(time);
@@ -91,7 +91,7 @@ struct Course {
 class ResumeScenes : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ResumeScenes, GoesOnBitForBit) {
-  const Scene scene = coarse(scenes::read_scene(end_to_end::scene(GetParam() + ".json"), tools::scene_vocabulary()));
+  const Scene scene = coarse(scenes::read_scene(end_to_end::scene(GetParam() + ".json")));
   const double step = 1 / scene.frame_rate / scene.tracking.steps_per_frame;
   const double start = std::min(0.3, 0.3 * scene.frames / scene.frame_rate);
   omp_set_num_threads(2);

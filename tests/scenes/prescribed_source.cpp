@@ -142,7 +142,7 @@ TEST(PrescribedSource, PositionsDoNotDependOnTheTimesAskedFor) {
 }
 
 TEST(PrescribedSource, ARotationComesBackAfterAWholeTurn) {
-  const Scene scene = read_scene(source_folder() / "scenes" / "rotating_ring.json", test_vocabulary());
+  const Scene scene = read_scene(source_folder() / "scenes" / "rotating_ring.json");
   const auto source = make_source(scene);
   ASSERT_EQ(source->state().positions.size(), 3u);
   source->advance_to(0.5);

@@ -82,7 +82,7 @@ TEST(SceneFile, WrittenScenesReadBackTheSame) {
   const Scene first = parse(full_scene);
   const std::string text = write_scene(first);
   // Read from elsewhere: file names must not depend on where the written scene stands.
-  const Scene second = parse_scene(text, "copy.json", "/tmp", test_vocabulary());
+  const Scene second = parse_scene(text, "copy.json", "/tmp");
   EXPECT_EQ(write_scene(second), text);
   EXPECT_EQ(second.seed, 18446744073709551615u);
   EXPECT_EQ(second.name, first.name);
@@ -161,7 +161,7 @@ TEST(SceneFile, PrescribedAndRecordedScenesReadBackTheSame) {
        R"({"source": "recorded", "spacing": 0.1, "recorded": {"files": "run/f_*.ply", "frame_interval": 0.04}})"}) {
     const Scene first = parse("{\"particles\": " + particles + "}");
     const std::string text = write_scene(first);
-    const Scene second = parse_scene(text, "copy.json", "/tmp", test_vocabulary());
+    const Scene second = parse_scene(text, "copy.json", "/tmp");
     EXPECT_EQ(write_scene(second), text);
     EXPECT_EQ(second.particles.positions, first.particles.positions);
     EXPECT_EQ(second.particles.motion.type, first.particles.motion.type);
@@ -173,9 +173,9 @@ TEST(SceneFile, EveryShippedSceneIsValidAndReadsBackTheSame) {
   EXPECT_GE(files.size(), 7u);
   for (const auto& file : files) {
     SCOPED_TRACE(file.string());
-    const Scene scene = read_scene(file, test_vocabulary());
+    const Scene scene = read_scene(file);
     const std::string text = write_scene(scene);
-    EXPECT_EQ(write_scene(parse_scene(text, "copy.json", "/tmp", test_vocabulary())), text);
+    EXPECT_EQ(write_scene(parse_scene(text, "copy.json", "/tmp")), text);
     EXPECT_FALSE(scene.description.empty());
   }
 }

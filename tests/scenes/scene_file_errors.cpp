@@ -16,7 +16,7 @@ using testing::StartsWith;
 TEST(SceneFileErrors, MissingFileFolderAndUnreadableFile) {
   const auto message = [](const std::filesystem::path& file) {
     try {
-      read_scene(file, test_vocabulary());
+      read_scene(file);
     } catch (const InputError& error) {
       return std::string(error.what());
     }

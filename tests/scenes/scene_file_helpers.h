@@ -11,17 +11,9 @@
 
 namespace flowskin::scenes {
 
-inline const SceneVocabulary& test_vocabulary() {
-  static const SceneVocabulary vocabulary{{"auto", "normal", "total", "curvature", "curvature-belyaev", "rigid",
-                                           "rigid-global", "affine", "simulation", "hybrid"}};
-  return vocabulary;
-}
-
 inline std::filesystem::path source_folder() { return std::filesystem::path(FLOWSKIN_SOURCE_DIR); }
 
-inline Scene parse(const std::string& text) {
-  return parse_scene(text, "test.json", source_folder() / "scenes", test_vocabulary());
-}
+inline Scene parse(const std::string& text) { return parse_scene(text, "test.json", source_folder() / "scenes"); }
 
 /// The message of the error that a text makes; "no error" where it makes none.
 inline std::string error_of(const std::string& text) {

@@ -62,7 +62,7 @@ TEST(SimulationSource, TimeOnlyGoesForward) {
 
 TEST(SimulationSource, StairsHoldTheParticlesTheyPromise) {
   const auto particles = [](const char* name) {
-    const Scene scene = read_scene(source_folder() / "scenes" / name, test_vocabulary());
+    const Scene scene = read_scene(source_folder() / "scenes" / name);
     return make_source(scene)->state().ids.size();
   };
   EXPECT_NEAR(static_cast<double>(particles("stairs.json")), 20000, 1000);

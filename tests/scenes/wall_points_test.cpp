@@ -19,7 +19,7 @@ Scene scene_with(const std::string& boundaries, const std::string& tracking = "{
                            R"(}, "fluid": {"viscosity": 0.01},
     "bodies": [{"shape": "ball", "center": [0, 0.5, 0], "radius": 0.2}], "tracking": )" +
                            tracking + R"(, "boundaries": )" + boundaries + "}";
-  return parse_scene(text, "test", FLOWSKIN_SOURCE_DIR "/scenes", {});
+  return parse_scene(text, "test", FLOWSKIN_SOURCE_DIR "/scenes");
 }
 
 tracking::FieldWalls walls_at(const Scene& scene, double time) {

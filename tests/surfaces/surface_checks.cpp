@@ -51,11 +51,11 @@ double share_of(const Values& values, Condition holds) {
 class Run {
  public:
   explicit Run(const std::filesystem::path& file)
-      : scene_(scenes::read_scene(file, tools::scene_vocabulary())), source_(scenes::make_source(scene_)) {
-    scene_.tracking.velocity = tools::velocity_method_for(scene_.tracking.velocity, source_->state());
+      : scene_(scenes::read_scene(file)), source_(scenes::make_source(scene_)) {
+    scene_.tracking.velocity = scenes::velocity_method_for(scene_.tracking.velocity, source_->state());
     result_.name = scene_.name;
     tracker_.emplace(timed(result_.seconds_tracking,
-                           [&] { return tracking::Tracker(tools::tracker_settings(scene_), particles()); }));
+                           [&] { return tracking::Tracker(scenes::settings_in_metres(scene_), particles()); }));
     result_.spacing = scene_.particles.spacing;
     result_.edge_length = tracker_->settings().edge_length;
     first_ = tracker_->mesh();

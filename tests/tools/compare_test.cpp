@@ -152,7 +152,7 @@ tracking::Markers markers_of_ball(bool exact) {
   scenes::Scene scene = turning_ball();
   const auto source = scenes::make_source(scene);
   const tracking::Particles start = to_particles(source->state());
-  const tracking::Tracker tracker(tracker_settings(scene), start);
+  const tracking::Tracker tracker(scenes::settings_in_metres(scene), start);
   if (!exact) scene.particles.source = scenes::ParticlesSpec::Source::simulation;
   GroundTruth truth(scene, tracker.settings(), start);
   truth.start_markers(tracker.mesh());
@@ -186,7 +186,7 @@ TEST_F(CompareFiles, NoMethodIsHelpedByMaxSlip) {
     std::filesystem::create_directories(directory.root());
     const auto source = scenes::make_source(scene);
     const tracking::Particles start = to_particles(source->state());
-    tracking::Tracker own(tracker_settings(scene), start);
+    tracking::Tracker own(scenes::settings_in_metres(scene), start);
     StageClock clock;
     Comparison comparison(scene, directory, {"normal", "affine"}, own, start, clock);
     for (int frame = 1; frame <= 3; ++frame) {

@@ -20,7 +20,7 @@ namespace flowskin::tools::experiments_test {
 namespace {
 
 scenes::Scene paper_scene(const std::string& name) {
-  scenes::Scene scene = scenes::read_scene(FLOWSKIN_SOURCE_DIR "/scenes/paper/" + name + ".json", scene_vocabulary());
+  scenes::Scene scene = scenes::read_scene(FLOWSKIN_SOURCE_DIR "/scenes/paper/" + name + ".json");
   scene.tracking.edge_length *= 2;  // quick
   return scene;
 }

@@ -15,7 +15,7 @@ namespace flowskin::tools {
 namespace {
 
 scenes::FileInfo describe_scene(const std::filesystem::path& file) {
-  const scenes::Scene scene = scenes::read_scene(file, scene_vocabulary());
+  const scenes::Scene scene = scenes::read_scene(file);
   using Source = scenes::ParticlesSpec::Source;
   const Source source = scene.particles.source;
   const char* name = source == Source::simulation   ? "a simulation"
@@ -37,7 +37,7 @@ scenes::FileInfo describe_scene(const std::filesystem::path& file) {
 int describe_all(const std::vector<std::filesystem::path>& files) {
   bool sound = true;
   for (const auto& file : files) {
-    const scenes::FileInfo info = file.extension() == ".json" ? describe_scene(file) : describe_file(file);
+    const scenes::FileInfo info = file.extension() == ".json" ? describe_scene(file) : scenes::describe_file(file);
     fmt::print("{}\n", file.string());
     for (const std::string& line : info.lines) fmt::print("  {}\n", line);
     sound = sound && info.sound;

@@ -109,7 +109,7 @@ int render(const RenderOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   const RunDirectory directory(options.directory);
   directory.check_is_run();
-  scenes::Scene scene = scenes::read_scene(directory.scene(), scene_vocabulary());
+  scenes::Scene scene = scenes::read_scene(directory.scene());
   override_settings(options, scene.render);
   catch_interruptions();
   Redraw(options, scene, directory).draw();

@@ -14,7 +14,7 @@ Option threads_option(int& threads, const std::string& help) {
 }
 
 Option velocity_option(std::optional<std::string>& velocity, const std::string& standard) {
-  std::vector<std::string> names{kAutomaticVelocity};
+  std::vector<std::string> names{scenes::automatic_velocity};
   for (const auto& method : tracking::velocity_methods()) names.push_back(method.name);
   return {
       "--velocity", &velocity, "Velocity method (default: " + standard + "); see `flowskin methods`", {.words = names}};

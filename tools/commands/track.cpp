@@ -130,7 +130,7 @@ scenes::RecordedSpec recorded_spec(const TrackOptions& options) {
   for (const fs::path& file : options.particles) spec.files.push_back(file.string());
   if (options.time_step) spec.frame_interval = *options.time_step;
   if (options.frame_rate) spec.frame_interval = 1 / *options.frame_rate;
-  if (options.no_ids) spec.ids = "none";
+  if (options.no_ids) spec.ids = scenes::RecordedSpec::Ids::none;
   return spec;
 }
 
@@ -142,12 +142,12 @@ scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) 
   scene.particles.source = scenes::ParticlesSpec::Source::recorded;
   scene.particles.recorded = recorded_spec(options);
   // What was found out need not be found out again when the scene is run.
-  if (sequence.ids == ParticleSequence::Ids::order) scene.particles.recorded.ids = "order";
-  if (sequence.ids == ParticleSequence::Ids::none) scene.particles.recorded.ids = "none";
+  if (sequence.ids == ParticleSequence::Ids::order) scene.particles.recorded.ids = scenes::RecordedSpec::Ids::order;
+  if (sequence.ids == ParticleSequence::Ids::none) scene.particles.recorded.ids = scenes::RecordedSpec::Ids::none;
   scene.particles.spacing = spacing_of(options, sequence);
   set_times(options, sequence, scene);
   scene.tracking.steps_per_frame = 1;
-  if (options.radius) scene.tracking.radius = *options.radius / scene.particles.spacing;
+  if (options.radius) scene.tracking.field.radius = *options.radius / scene.particles.spacing;
   if (options.edge_length) scene.tracking.edge_length = *options.edge_length / scene.particles.spacing;
   if (!options.texture.empty()) scene.texture.image = options.texture;
   if (!options.mapping.empty()) scene.texture.mapping = options.mapping;
@@ -170,12 +170,10 @@ int track(const TrackOptions& options) {
   const double spacing = scene.particles.spacing;
   say(options,
       fmt::format("effective radius {:.4g} m ({:.3g} spacings), edge length {:.4g} m ({:.3g} spacings), velocity {}",
-                  scene.tracking.radius * spacing, scene.tracking.radius, scene.tracking.edge_length * spacing,
-                  scene.tracking.edge_length, scene.tracking.velocity));
+                  scene.tracking.field.radius * spacing, scene.tracking.field.radius,
+                  scene.tracking.edge_length * spacing, scene.tracking.edge_length, scene.tracking.velocity));
   // As if read from a file: every value is checked, and scene.json in the run directory repeats this run.
-  run_scene(scenes::parse_scene(scenes::write_scene(scene), "the options of flowskin track", scene.directory,
-                                scene_vocabulary()),
-            run);
+  run_scene(scenes::parse_scene(scenes::write_scene(scene), "the options of flowskin track", scene.directory), run);
   return 0;
 }
 

@@ -40,7 +40,7 @@ Verdict verdict_of(const std::vector<bool>& holds) {
 }
 
 scenes::Scene PaperRun::scene(const std::string& name) const {
-  scenes::Scene scene = scenes::read_scene(scenes / (name + ".json"), scene_vocabulary());
+  scenes::Scene scene = scenes::read_scene(scenes / (name + ".json"));
   if (quick) {
     scene.render.height = scene.render.height * kQuickWidth / scene.render.width;
     scene.render.width = kQuickWidth;

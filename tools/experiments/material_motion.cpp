@@ -21,7 +21,7 @@ double period_of(const scenes::Scene& scene) {
 }  // namespace
 
 MaterialMotion::MaterialMotion(const scenes::Scene& scene)
-    : motion_(scene.particles.motion), settings_(tracker_settings(scene).field), period_(period_of(scene)) {
+    : motion_(scene.particles.motion), settings_(scenes::settings_in_metres(scene).field), period_(period_of(scene)) {
   if (scene.particles.source != scenes::ParticlesSpec::Source::prescribed || !motion_.has_closed_form())
     throw InputError(
         fmt::format("scene {}: this experiment needs particles.source \"prescribed\" and a motion whose paths are "

@@ -150,7 +150,7 @@ std::string integrator_name(tracking::Integrator integrator) {
 }
 
 RideSettings ride_settings(const scenes::Scene& scene) {
-  const tracking::TrackerSettings tracker = tracker_settings(scene);
+  const tracking::TrackerSettings tracker = scenes::settings_in_metres(scene);
   const double period = MaterialMotion(scene).period();
   RideSettings settings;
   settings.velocity = tracker.velocity;
@@ -164,7 +164,7 @@ RideSettings ride_settings(const scenes::Scene& scene) {
 
 tracking::SurfaceMesh start_mesh(const scenes::Scene& scene) {
   const tracking::MetaballField field = MaterialMotion(scene).field(0);
-  tracking::SurfaceGeometry geometry = tracking::extract_surface(field, tracker_settings(scene).edge_length);
+  tracking::SurfaceGeometry geometry = tracking::extract_surface(field, scenes::settings_in_metres(scene).edge_length);
   tracking::project_to_surface(field, tracking::default_projection(field.settings()), geometry.positions);
   tracking::SurfaceMesh mesh;
   mesh.positions = mesh.rest_positions = std::move(geometry.positions);

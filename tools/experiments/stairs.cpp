@@ -52,7 +52,7 @@ class StairsRun {
     table_.columns = {"frame",      "time",          "method",       "vertices", "median_drift",
                       "components", "reextractions", "max_distance", "spacing"};
     for (const std::string& method : methods()) {
-      tracking::TrackerSettings settings = tracker_settings(scene_);
+      tracking::TrackerSettings settings = scenes::settings_in_metres(scene_);
       settings.velocity = method;
       settings.max_slip = 0;
       walkers_.push_back({method, tracking::Tracker(settings, to_particles(source_->state())), 0, {}, 0, {}});

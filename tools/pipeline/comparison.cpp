@@ -39,7 +39,7 @@ std::vector<std::string> split(const std::string& list) {
 /// Those of the scene, but for the method, and with a texture that slips freely: one that is held on the particles
 /// would show what they do, not what the method does.
 tracking::TrackerSettings settings_for(const scenes::Scene& scene, const std::string& method) {
-  tracking::TrackerSettings settings = tracker_settings(scene);
+  tracking::TrackerSettings settings = scenes::settings_in_metres(scene);
   settings.velocity = method;
   settings.max_slip = 0;
   return settings;

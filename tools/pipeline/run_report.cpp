@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include "scenes/settings_in_metres.h"
 #include "tools/report/run_log.h"
 #include "tools/report/time_table.h"
 #include "tools/report/worst_frames.h"
@@ -16,7 +17,7 @@ std::string surface_line(const scenes::Scene& scene, const tracking::Tracker& tr
   return fmt::format(
       "surface: {} vertices, velocity {}, {}, effective radius {:.4g} m, threshold {:.4g}, edge {:.4g} m, {} "
       "fairing iterations, texture slips {}",
-      tracker.mesh().positions.size(), settings.velocity, scene.tracking.integrator, settings.field.radius,
+      tracker.mesh().positions.size(), settings.velocity, scenes::name_of(settings.integrator), settings.field.radius,
       settings.field.threshold, settings.edge_length, settings.fairing_iterations,
       settings.max_slip > 0 ? fmt::format("{:.4g} m at most", settings.max_slip) : "freely");
 }

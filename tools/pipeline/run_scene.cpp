@@ -46,7 +46,7 @@ void resume_scene(scenes::Scene scene, RunOptions& options, const RunDirectory& 
 void run_scene(const RunOptions& options) {
   RunOptions with_folder = options;
   if (options.out.empty()) with_folder.out = std::filesystem::path("output") / options.scene_file.stem();
-  run_scene(scenes::read_scene(options.scene_file, scene_vocabulary()), with_folder);
+  run_scene(scenes::read_scene(options.scene_file), with_folder);
 }
 
 void run_scene(scenes::Scene scene, const RunOptions& given) {

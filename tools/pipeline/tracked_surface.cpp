@@ -17,7 +17,7 @@ constexpr double kLargestMismatch = 0.5;
 
 TrackedSurface::TrackedSurface(const scenes::Scene& scene, const scenes::ParticleState& start)
     : scene_(scene),
-      tracker_(tracker_settings(scene), to_particles(start)),
+      tracker_(scenes::settings_in_metres(scene), to_particles(start)),
       textures_(scene.texture, rest_frame_of(scene.texture)) {}
 
 tracking::Particles TrackedSurface::with_textures(const scenes::ParticleState& state) {

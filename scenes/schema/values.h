@@ -50,8 +50,8 @@ Kind<bool> boolean();
 Kind<std::string> text();
 /// A text, or a list of texts.
 Kind<std::vector<std::string>> texts();
-/// One of the names; `type` replaces the list of names in the documentation, where given. No names: any text.
-Kind<std::string> choice(const std::vector<std::string>& names, const std::string& type = "");
+/// One of the names.
+Kind<std::string> choice(const std::vector<std::string>& names);
 /// Three numbers, each within +-limit.
 Kind<Vec3> vector(double limit = max_coordinate);
 /// Three numbers, or one that stands for all three; none is 0.
@@ -62,27 +62,5 @@ Kind<std::array<bool, 3>> axes();
 Kind<std::array<double, 3>> color();
 /// Any number of points.
 Kind<std::vector<Vec3>> points();
-
-/// One of an enumeration's values by name.
-template <class E>
-Kind<E> choice_of(const std::vector<std::pair<std::string, E>>& values) {
-  std::vector<std::string> names;
-  for (const auto& value : values) names.push_back(value.first);
-  const Kind<std::string> name = choice(names);
-  const auto read = [name, values](const JsonNode& node) {
-    const std::string chosen = name.read(node);
-    for (const auto& value : values) {
-      if (value.first == chosen) return value.second;
-    }
-    throw Mismatch{describe(node), ""};
-  };
-  const auto write = [name, values](const E& e, int indent) {
-    for (const auto& value : values) {
-      if (value.second == e) return name.write(value.first, indent);
-    }
-    return name.write(values.front().first, indent);
-  };
-  return {name.type, read, write};
-}
 
 }  // namespace flowskin::scenes

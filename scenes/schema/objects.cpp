@@ -1,6 +1,12 @@
-#include "scenes/scene_objects.h"
+#include "scenes/schema/objects.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "common/errors.h"
+#include "scenes/nearest_name.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -32,32 +38,13 @@ std::string suggestion(const std::string& name, const std::string& section, cons
   return fmt::format("; valid here: {}", fmt::join(names, ", "));
 }
 
-}  // namespace
+/// A line of an object as it is written.
+struct WrittenKey {
+  std::string path, value;
+};
 
-void Problems::throw_if_any() const {
-  if (list_.empty()) return;
-  auto sorted = list_;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::string message;
-  constexpr std::size_t max_lines = 20;
-  for (std::size_t i = 0; i < std::min(sorted.size(), max_lines); ++i) {
-    const TextPlace place = place_in_text(text_, sorted[i].first);
-    message += fmt::format("{}{}:{}:{}: {}", i > 0 ? "\n" : "", file_, place.line, place.column, sorted[i].second);
-  }
-  if (sorted.size() > max_lines) message += fmt::format("\n... and {} more", sorted.size() - max_lines);
-  throw InputError(message);
-}
-
-const JsonNode* find_path(const JsonNode& node, const std::string& path) {
-  const JsonNode* found = &node;
-  for (std::size_t start = 0; found && start <= path.size();) {
-    const std::size_t end = std::min(path.find('.', start), path.size());
-    found = found->find(path.substr(start, end - start));
-    start = end + 1;
-  }
-  return found;
-}
-
+/// Reports the members of `node` that are none of `paths` nor sections of them, and those that stand there twice;
+/// `section` is "" or ends with a dot.
 void report_unknown_keys(const JsonNode& node, const std::vector<std::string>& paths, const std::string& section,
                          const std::string& object_path, Problems& problems) {
   for (std::size_t i = 0; i < node.children.size(); ++i) {
@@ -84,15 +71,18 @@ void report_unknown_keys(const JsonNode& node, const std::vector<std::string>& p
   }
 }
 
+/// Such as "a number > 0 (m)".
 std::string type_and_unit(const std::string& type, const std::string& unit) {
   return unit.empty() ? type : fmt::format("{} ({})", type, unit);
 }
 
+/// Text of a value that was not as expected.
 std::string mismatch_message(const std::string& path, const Mismatch& mismatch, const std::string& type,
                              const std::string& unit) {
   return fmt::format("{} is {}; expected {}{}", path, mismatch.found, type_and_unit(type, unit), mismatch.hint);
 }
 
+/// Keys with dotted paths as a JSON object with its sections, whose closing brace stands at `indent`.
 std::string write_sections(const std::vector<WrittenKey>& keys, int indent) {
   std::string text = "{";
   for (std::size_t i = 0; i < keys.size();) {
@@ -111,6 +101,78 @@ std::string write_sections(const std::vector<WrittenKey>& keys, int indent) {
     text += quote_json(section.substr(0, dot)) + ": " + write_sections(inner, indent + 2);
   }
   return text + (keys.empty() ? "}" : fmt::format("\n{:{}}}}", "", indent));
+}
+
+void read_key(const Key& key, const JsonNode& value, const std::string& path, Problems& problems) {
+  try {
+    key.value->read(value, path, problems);
+  } catch (const Mismatch& mismatch) {
+    const std::size_t place = mismatch.offset == Mismatch::npos ? value.offset : mismatch.offset;
+    problems.add(place, mismatch_message(path, mismatch, key.value->type(), key.unit));
+  }
+}
+
+}  // namespace
+
+void Problems::throw_if_any() const {
+  if (list_.empty()) return;
+  auto sorted = list_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string message;
+  constexpr std::size_t max_lines = 20;
+  for (std::size_t i = 0; i < std::min(sorted.size(), max_lines); ++i) {
+    const TextPlace place = place_in_text(text_, sorted[i].first);
+    message += fmt::format("{}{}:{}:{}: {}", i > 0 ? "\n" : "", file_, place.line, place.column, sorted[i].second);
+  }
+  if (sorted.size() > max_lines) message += fmt::format("\n... and {} more", sorted.size() - max_lines);
+  throw InputError(message);
+}
+
+const JsonNode* find_path(const JsonNode& node, const std::string& path) {
+  const JsonNode* found = &node;
+  for (std::size_t start = 0; found && start <= path.size();) {
+    const std::size_t end = std::min(path.find('.', start), path.size());
+    found = found->find(path.substr(start, end - start));
+    start = end + 1;
+  }
+  return found;
+}
+
+void read_object(const JsonNode& node, const KeyTable& table, const std::string& path, Problems& problems) {
+  if (node.type != JsonNode::Type::object) {
+    const std::string name = path.empty() ? "the scene" : path;
+    problems.add(node.offset, fmt::format("{} is {}; expected an object in braces", name, describe(node)));
+    return;
+  }
+  std::vector<std::string> paths;
+  for (const Key& key : table.keys()) paths.push_back(key.path);
+  report_unknown_keys(node, paths, "", path, problems);
+
+  bool selection_known = true;  // Where a selecting key is wrong, nobody knows which others apply.
+  for (const Key& key : table.keys()) {
+    if (!selection_known && !key.condition.empty()) continue;
+    const JsonNode* value = find_path(node, key.path);
+    const std::string key_path = join_path(path, key.path);
+    if (!key.applies()) {
+      if (value) problems.add(value->offset, fmt::format("{} belongs to {} only", key_path, key.condition));
+    } else if (value) {
+      const std::size_t count = problems.count();
+      read_key(key, *value, key_path, problems);
+      if (key.selects && problems.count() > count) selection_known = false;
+    } else if (key.required) {
+      problems.add(node.offset, fmt::format("{} is missing; expected {}: {}", key_path,
+                                            type_and_unit(key.value->type(), key.unit), key.meaning));
+    }
+  }
+}
+
+std::string write_object(const KeyTable& table, int indent) {
+  std::vector<WrittenKey> written;
+  for (const Key& key : table.keys()) {
+    const int depth = 1 + static_cast<int>(std::count(key.path.begin(), key.path.end(), '.'));
+    if (key.applies()) written.push_back({key.path, key.value->write(indent + 2 * depth)});
+  }
+  return write_sections(written, indent);
 }
 
 }  // namespace flowskin::scenes

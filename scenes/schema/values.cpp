@@ -1,4 +1,4 @@
-#include "scenes/scene_values.h"
+#include "scenes/schema/values.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -94,19 +94,15 @@ Kind<std::string> text() {
   return {"text", read, [](const std::string& value, int) { return quote_json(value); }};
 }
 
-Kind<std::string> choice(const std::vector<std::string>& names, const std::string& type) {
-  Kind<std::string> kind = text();
-  if (!names.empty()) {
-    kind.read = [names, plain = kind.read](const JsonNode& node) {
-      const std::string name = plain(node);
-      if (std::find(names.begin(), names.end(), name) == names.end()) {
-        throw Mismatch{describe(node), did_you_mean(name, names)};
-      }
-      return name;
-    };
-  }
-  kind.type = !type.empty() && names.empty() ? type : fmt::format("one of: {}", fmt::join(names, ", "));
-  return kind;
+Kind<std::string> choice(const std::vector<std::string>& names) {
+  const auto read = [names, plain = text().read](const JsonNode& node) {
+    const std::string name = plain(node);
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      throw Mismatch{describe(node), did_you_mean(name, names)};
+    }
+    return name;
+  };
+  return {fmt::format("one of: {}", fmt::join(names, ", ")), read, text().write};
 }
 
 Kind<Vec3> vector(double limit) {
