@@ -7,7 +7,7 @@
 
 #include "tracking/advection/integrator.h"
 #include "tracking/field/metaball_field.h"
-#include "tracking/mesh/surface_mesh.h"
+#include "tracking/mesh/vertex_attributes.h"
 #include "tracking/particles.h"
 #include "tracking/repair/small_parts.h"
 #include "tracking/velocity/confidence.h"
@@ -67,7 +67,9 @@ void visit_state(Archive& archive, Particles& p) {
 }
 template <class Archive>
 void visit_state(Archive& archive, SurfaceMesh& m) {
-  archive(m.positions, m.rest_positions, m.layers, m.velocities, m.ids, m.triangles, m.next_id);
+  archive(m.positions);
+  for_each_vertex_member(m, [&](Carried, std::string_view, auto& values) { archive(values); });
+  archive(m.triangles, m.next_id);
 }
 
 /// All that the tracker carries from one call to the next but its settings. What follows from it (field, adjacency) is

@@ -7,8 +7,20 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace flowskin::scenes {
+
+/// Numbers in a value, and the bytes that each takes in a file.
+template <class T>
+inline constexpr int components_of = 1;
+template <class T>
+requires requires(T v) { v[0]; }
+inline constexpr int components_of<T> = static_cast<int>(sizeof(T) / sizeof(T{}[0]));
+template <class T>
+inline constexpr std::size_t bytes_of_number = std::is_same_v<T, std::uint64_t>                          ? 8
+                                               : sizeof(T) == static_cast<std::size_t>(components_of<T>) ? 1
+                                                                                                         : 4;
 
 /// Grows by binary little-endian values and by numbers as text, and is then written in one go.
 class ByteBuffer {
@@ -38,6 +50,19 @@ class ByteBuffer {
   template <class Vector>
   void vec3(const Vector& v) {
     for (int k = 0; k < 3; ++k) f32(static_cast<float>(v[k]));
+  }
+
+  /// A value by its type: numbers of floating point as float32, each component of a vector or colour.
+  template <class T>
+  void value(const T& v) {
+    if constexpr (std::is_same_v<T, std::uint64_t>)
+      u64(v);
+    else if constexpr (std::is_same_v<T, std::uint8_t>)
+      byte(v);
+    else if constexpr (std::is_floating_point_v<T>)
+      f32(static_cast<float>(v));
+    else
+      for (int k = 0; k < components_of<T>; ++k) value(v[k]);
   }
 
  private:

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "common/errors.h"
+#include "scenes/io/frame_attributes.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -19,14 +21,15 @@ class FrameChecker {
   }
 
   template <class T>
-  void length(const std::vector<T>& values, const char* what) const {
+  void length(const std::vector<T>& values, std::string_view what) const {
     if (values.size() != count_)
-      fail("there are " + std::to_string(count_) + " positions but " + std::to_string(values.size()) + " " + what);
+      fail("there are " + std::to_string(count_) + " positions but " + std::to_string(values.size()) + " " +
+           std::string(what));
   }
 
   /// Numbers beyond the range of float would become infinite in the file.
   template <class Vector>
-  void finite(const std::vector<Vector>& values, const char* what) const {
+  void finite(const std::vector<Vector>& values, std::string_view what) const {
     length(values, what);
     for (std::size_t i = 0; i < values.size(); ++i)
       if (!values[i].template cast<float>().allFinite())
@@ -50,15 +53,26 @@ void check_corners(const std::vector<std::array<Vec2f, 3>>& uvs, std::size_t tri
         checker.fail("the " + what + " of triangle " + std::to_string(i) + " are not finite numbers");
 }
 
-/// What fades one texture into another: all of it, or only the weights, or nothing.
+/// The weights of a second texture, which must be there where its coordinates are.
 void check_blend(const SurfaceFrame& frame, const FrameChecker& checker) {
-  if (!frame.texture_blend.empty()) checker.length(frame.texture_blend, "texture blend weights");
   for (const float weight : frame.texture_blend)
     if (!(weight >= 0 && weight <= 1)) checker.fail("a texture blend weight is not between 0 and 1");
   if (frame.corner_uvs2.empty() && frame.vertex_uvs2.empty()) return;
-  if (frame.texture_blend.empty()) checker.length(frame.texture_blend, "texture blend weights");
-  checker.finite(frame.vertex_uvs2, "second texture coordinates");
+  checker.length(frame.texture_blend, "texture blend weights");
+  checker.length(frame.vertex_uvs2, "second texture coordinates");
   check_corners(frame.corner_uvs2, frame.mesh.triangles.size(), "second texture coordinates", checker);
+}
+
+/// Every array has one value an item, and those of vectors are finite.
+template <class Frame>
+void check_attributes(const Frame& frame, const FrameChecker& checker) {
+  for_each_file_attribute(frame, [&](const FileAttribute& attribute, const auto& values) {
+    if (attribute.optional && values.empty()) return;
+    if constexpr (requires { values[0].allFinite(); })
+      checker.finite(values, attribute.plural);
+    else
+      checker.length(values, attribute.plural);
+  });
 }
 
 }  // namespace
@@ -66,15 +80,8 @@ void check_blend(const SurfaceFrame& frame, const FrameChecker& checker) {
 void check_frame(const SurfaceFrame& frame, const std::filesystem::path& file) {
   const tracking::SurfaceMesh& mesh = frame.mesh;
   const FrameChecker checker(file, "vertex", mesh.positions.size());
-  checker.finite(mesh.positions, "positions");
-  checker.finite(mesh.rest_positions, "rest positions");
-  checker.finite(mesh.velocities, "velocities");
-  checker.finite(frame.normals, "normals");
-  checker.finite(frame.vertex_uvs, "texture coordinates");
-  if (!frame.confidence.empty()) checker.finite(frame.confidence, "confidences");
+  check_attributes(frame, checker);
   check_blend(frame, checker);
-  checker.length(mesh.ids, "ids");
-  checker.length(frame.colors, "colours");
   check_corners(frame.corner_uvs, mesh.triangles.size(), "texture coordinates", checker);
   const auto vertex_count = static_cast<int>(mesh.positions.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
@@ -87,12 +94,7 @@ void check_frame(const SurfaceFrame& frame, const std::filesystem::path& file) {
 void check_frame(const ParticleFrame& frame, const std::filesystem::path& file) {
   const ParticleState& state = frame.state;
   const FrameChecker checker(file, "particle", state.positions.size());
-  checker.finite(state.positions, "positions");
-  checker.finite(state.velocities, "velocities");
-  checker.finite(state.rest_positions, "rest positions");
-  checker.length(state.densities, "densities");
-  checker.length(state.ids, "ids");
-  checker.length(frame.colors, "colours");
+  check_attributes(frame, checker);
   for (std::size_t i = 0; i < state.densities.size(); ++i)
     if (!std::isfinite(static_cast<float>(state.densities[i])))
       checker.fail("the density of particle " + std::to_string(i) + " is not a finite number");

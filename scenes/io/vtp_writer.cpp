@@ -1,14 +1,23 @@
 // VTK's PolyData in XML with raw appended data, and ParaView's collections.
 #include <concepts>
 #include <string>
+#include <type_traits>
 
 #include "scenes/io/atomic_file.h"
 #include "scenes/io/byte_buffer.h"
+#include "scenes/io/frame_attributes.h"
 #include "scenes/io/frame_checks.h"
 #include "scenes/io/frame_files.h"
 
 namespace flowskin::scenes {
 namespace {
+
+template <class T>
+std::string_view vtp_type() {
+  if constexpr (std::is_same_v<T, std::uint64_t>) return "UInt64";
+  if constexpr (std::is_same_v<T, std::uint8_t> || std::is_same_v<T, Color>) return "UInt8";
+  return "Float32";
+}
 
 /// Collects arrays: their descriptions as XML, their values one after the other, each led by its length in bytes.
 class VtpArrays {
@@ -29,26 +38,11 @@ class VtpArrays {
     return data_;
   }
 
-  template <class Vector>
-  void vectors(ByteBuffer& xml, std::string_view name, const std::vector<Vector>& values) {
-    ByteBuffer& data = begin(xml, name, "Float32", 3, values.size(), 4);
-    for (const Vector& v : values) data.vec3(v);
-  }
-  void pairs(ByteBuffer& xml, std::string_view name, const std::vector<Vec2f>& values) {
-    ByteBuffer& data = begin(xml, name, "Float32", 2, values.size(), 4);
-    for (const Vec2f& v : values) {
-      data.f32(v.x());
-      data.f32(v.y());
-    }
-  }
-  void colors(ByteBuffer& xml, const std::vector<Color>& values) {
-    ByteBuffer& data = begin(xml, "color", "UInt8", 3, values.size(), 1);
-    for (const Color& color : values)
-      for (const std::uint8_t channel : color) data.byte(channel);
-  }
-  void ids(ByteBuffer& xml, const std::vector<std::uint64_t>& values) {
-    ByteBuffer& data = begin(xml, "id", "UInt64", 1, values.size(), 8);
-    for (const std::uint64_t id : values) data.u64(id);
+  /// An array of what vertices or particles carry; its type follows from that of the values.
+  template <class T>
+  void attribute(ByteBuffer& xml, std::string_view name, const std::vector<T>& values) {
+    ByteBuffer& data = begin(xml, name, vtp_type<T>(), components_of<T>, values.size(), bytes_of_number<T>);
+    for (const T& value : values) data.value(value);
   }
   /// Cells of `corners` points each; `point(i)` is the i-th of all their points.
   void cells(ByteBuffer& xml, std::size_t count, int corners, std::invocable<std::size_t> auto point) {
@@ -80,6 +74,12 @@ void begin_piece(ByteBuffer& xml, double time, std::size_t points, std::size_t v
   xml.text("\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"");
   xml.number(polygons);
   xml.text("\">\n");
+}
+
+template <class Frame>
+void add_arrays(const Frame& frame, ByteBuffer& xml, VtpArrays& arrays) {
+  for_each_vtp_array(
+      frame, [&](const FileAttribute& attribute, const auto& values) { arrays.attribute(xml, attribute.vtp, values); });
 }
 
 void finish(const std::filesystem::path& file, ByteBuffer& xml, const VtpArrays& arrays) {
@@ -119,20 +119,9 @@ void write_surface_vtp(const std::filesystem::path& file, const SurfaceFrame& fr
   VtpArrays arrays;
   begin_piece(xml, frame.time, mesh.positions.size(), 0, mesh.triangles.size());
   xml.text("      <PointData Normals=\"Normals\" TCoords=\"TCoords\" Scalars=\"color\" Vectors=\"velocity\">\n");
-  arrays.vectors(xml, "Normals", frame.normals);
-  arrays.pairs(xml, "TCoords", frame.vertex_uvs);
-  arrays.colors(xml, frame.colors);
-  arrays.vectors(xml, "velocity", mesh.velocities);
-  arrays.vectors(xml, "rest_position", mesh.rest_positions);
-  arrays.ids(xml, mesh.ids);
-  if (!frame.confidence.empty()) arrays.pairs(xml, "confidence", frame.confidence);
-  if (!frame.vertex_uvs2.empty()) arrays.pairs(xml, "TCoords2", frame.vertex_uvs2);
-  if (!frame.texture_blend.empty()) {
-    ByteBuffer& weights = arrays.begin(xml, "texture_blend", "Float32", 1, frame.texture_blend.size(), 4);
-    for (const float weight : frame.texture_blend) weights.f32(weight);
-  }
+  add_arrays(frame, xml, arrays);
   xml.text("      </PointData>\n      <Points>\n");
-  arrays.vectors(xml, "Points", mesh.positions);
+  arrays.attribute(xml, "Points", mesh.positions);
   xml.text("      </Points>\n      <Polys>\n");
   arrays.cells(xml, mesh.triangles.size(), 3, [&mesh](std::size_t i) { return mesh.triangles[i / 3][i % 3]; });
   xml.text("      </Polys>\n");
@@ -146,22 +135,9 @@ void write_particles_vtp(const std::filesystem::path& file, const ParticleFrame&
   VtpArrays arrays;
   begin_piece(xml, state.time, state.positions.size(), state.positions.size(), 0);
   xml.text("      <PointData Scalars=\"color\" Vectors=\"velocity\">\n");
-  arrays.colors(xml, frame.colors);
-  arrays.vectors(xml, "velocity", state.velocities);
-  arrays.vectors(xml, "rest_position", state.rest_positions);
-  ByteBuffer& densities = arrays.begin(xml, "density", "Float32", 1, state.densities.size(), 4);
-  for (const double density : state.densities) densities.f32(static_cast<float>(density));
-  if (!state.fluids.empty()) {
-    ByteBuffer& fluids = arrays.begin(xml, "fluid", "UInt8", 1, state.fluids.size(), 1);
-    for (const std::uint8_t fluid : state.fluids) fluids.byte(fluid);
-  }
-  if (!state.viscosities.empty()) {
-    ByteBuffer& viscosities = arrays.begin(xml, "viscosity", "Float32", 1, state.viscosities.size(), 4);
-    for (const float viscosity : state.viscosities) viscosities.f32(viscosity);
-  }
-  arrays.ids(xml, state.ids);
+  add_arrays(frame, xml, arrays);
   xml.text("      </PointData>\n      <Points>\n");
-  arrays.vectors(xml, "Points", state.positions);
+  arrays.attribute(xml, "Points", state.positions);
   xml.text("      </Points>\n      <Verts>\n");
   arrays.cells(xml, state.positions.size(), 1, [](std::size_t i) { return static_cast<int>(i); });
   xml.text("      </Verts>\n");

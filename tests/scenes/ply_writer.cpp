@@ -1,9 +1,12 @@
 #include <cstring>
 
 #include "common/errors.h"
+#include "scenes/io/byte_buffer.h"
+#include "scenes/io/frame_attributes.h"
 #include "scenes/io/frame_files.h"
 #include "scenes/io/ply_reader.h"
 #include "tests/scenes/io_fixture.h"
+#include "tracking/mesh/vertex_attributes.h"
 
 namespace flowskin::scenes::ply_writer_test {
 namespace {
@@ -49,6 +52,40 @@ TEST_F(PlyWriterTest, SurfaceHasAllProperties) {
     EXPECT_EQ(ply.vertex.at("red")[i], frame.colors[i][0]);
     EXPECT_EQ(ply.vertex.at("blue")[i], frame.colors[i][2]);
   }
+}
+
+/// Whatever is in the table of attributes is in the file under its names, and what is the mesh's is read back.
+TEST_F(PlyWriterTest, EveryAttributeOfTheTableComesBack) {
+  SurfaceFrame frame = sphere_frame(2);
+  frame.vertex_uvs2 = frame.vertex_uvs;
+  frame.corner_uvs2 = frame.corner_uvs;
+  for (const Vec2f& uv : frame.vertex_uvs) {
+    frame.confidence.emplace_back(0.5F * uv.x(), 1);
+    frame.texture_blend.push_back(1 / (1 + uv.squaredNorm()));
+  }
+  write_surface_ply(path("a.ply"), frame);
+  const PlyFile ply = read_ply(path("a.ply"));
+  std::size_t columns = 0;
+  for_each_surface_attribute(frame, [&](const FileAttribute& attribute, const auto& values) {
+    using T = typename std::remove_cvref_t<decltype(values)>::value_type;
+    ASSERT_FALSE(values.empty()) << attribute.plural;
+    columns += attribute.ply.size();
+    for (std::size_t k = 0; k < attribute.ply.size(); ++k) {
+      const std::vector<double>& column = ply.vertex.at(std::string(attribute.ply[k]));
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if constexpr (std::is_arithmetic_v<T>)
+          EXPECT_EQ(column[i], as_float(static_cast<double>(values[i]))) << attribute.ply[k];
+        else
+          EXPECT_EQ(column[i], as_float(static_cast<double>(values[i][k % components_of<T>]))) << attribute.ply[k];
+      }
+    }
+  });
+  EXPECT_EQ(ply.vertex.size(), columns);
+  SurfaceFrame again;
+  again.mesh = read_surface_ply(path("a.ply"));
+  tracking::for_each_attribute(again.mesh, [&](auto, std::string_view name, const auto& values) {
+    EXPECT_EQ(values.size(), frame.mesh.positions.size()) << name << " is not in the table of attributes";
+  });
 }
 
 /// The bytes are checked without our reader: the last face stands at the very end.

@@ -7,6 +7,7 @@
 
 #include "common/closest_point.h"
 #include "tracking/mesh/mesh_measures.h"
+#include "tracking/mesh/vertex_attributes.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -224,11 +225,10 @@ SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& g
   SurfaceMesh mesh;
   mesh.positions = geometry.positions;
   mesh.triangles = geometry.triangles;
-  mesh.velocities.assign(count, Vec3::Zero());
-  mesh.ids.resize(count);
   mesh.next_id = old_mesh.next_id;
   MaterialCarrier(old_mesh.positions, old_mesh.triangles, field, particles, settings)
       .append_material(old_mesh, mesh.positions, normals, mesh);
+  resize_attributes(mesh.positions.size(), mesh);
 
   const std::vector<Vec3> old_normals = vertex_normals(old_mesh.positions, old_mesh.triangles);
   const std::vector<int> same =

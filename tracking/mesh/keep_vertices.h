@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tracking/mesh/surface_mesh.h"
+#include "tracking/mesh/vertex_attributes.h"
 
 namespace flowskin::tracking {
 
@@ -19,10 +19,7 @@ void keep_numbered(const std::vector<int>& number, std::vector<T>& values) {
 
 /// Of everything that vertices carry but their positions.
 inline void keep_attributes(const std::vector<int>& number, SurfaceMesh& mesh) {
-  keep_numbered(number, mesh.rest_positions);
-  for (std::vector<Vec3>& layer : mesh.layers) keep_numbered(number, layer);
-  keep_numbered(number, mesh.velocities);
-  keep_numbered(number, mesh.ids);
+  for_each_attribute(mesh, [&](Carried, std::string_view, auto& values) { keep_numbered(number, values); });
 }
 
 }  // namespace flowskin::tracking

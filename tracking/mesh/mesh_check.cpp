@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tracking/mesh/mesh_measures.h"
+#include "tracking/mesh/vertex_attributes.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -212,12 +213,12 @@ std::vector<std::string> mesh_problems(const SurfaceMesh& mesh) {
                          " vertices");
     }
   };
-  check_size(mesh.rest_positions.size(), "rest positions");
-  for (const auto& layer : mesh.layers) check_size(layer.size(), "places in a layer");
-  check_size(mesh.velocities.size(), "velocities");
-  check_size(mesh.ids.size(), "ids");
-  check_finite(mesh.rest_positions, "rest positions", problems);
-  check_finite(mesh.velocities, "velocities", problems);
+  for_each_attribute(
+      mesh, [&](Carried, std::string_view name, const auto& values) { check_size(values.size(), std::string(name)); });
+  for_each_attribute(mesh, [&](Carried, std::string_view name, const auto& values) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(values)>, std::vector<Vec3>>)
+      check_finite(values, std::string(name), problems);
+  });
   check_ids(mesh, problems);
   return problems;
 }

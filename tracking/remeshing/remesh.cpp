@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "tracking/mesh/edges_by_length.h"
@@ -50,19 +51,9 @@ std::vector<Edge> ordered_edges(const SurfaceMesh& mesh, const Sizes& sizes, Edg
   return edges;
 }
 
-// What a new vertex in the middle of an edge carries: the mean of the ends, as its position; the places of one end
-// where two bodies have met.
-void add_middle(const Edge& edge, double torn, SurfaceMesh& mesh) {
-  const auto& [a, b] = edge;
-  const double farthest = torn * (mesh.positions[a] - mesh.positions[b]).norm();
-  const auto add = [&](std::vector<Vec3>& places) {
-    const Vec3 from = places[edge[0]], to = places[edge[1]];
-    places.push_back(torn > 0 && (from - to).norm() > farthest ? from : Vec3((from + to) / 2));
-  };
-  add(mesh.rest_positions);
-  for (auto& layer : mesh.layers) add(layer);
-  mesh.velocities.push_back((mesh.velocities[a] + mesh.velocities[b]) / 2);
-  mesh.ids.push_back(mesh.next_id++);
+// How far apart the material of the ends of an edge may be (m) for them to count as one body.
+double farthest_material(const Edge& edge, double torn, const std::vector<Vec3>& positions) {
+  return torn > 0 ? torn * (positions[edge[0]] - positions[edge[1]]).norm() : std::numeric_limits<double>::infinity();
 }
 
 // An edge of the surface at one moment: from end to end, with the normals there.
@@ -110,14 +101,13 @@ int split_long_edges(const std::function<void(std::vector<Vec3>&)>& put_on_surfa
   const std::size_t old_count = mesh.positions.size();
   const SurfaceAt now(mesh.positions, mesh.triangles);
   std::vector<std::pair<std::vector<Vec3>*, SurfaceAt>> others;
-  others.emplace_back(&mesh.rest_positions, SurfaceAt(mesh.rest_positions, mesh.triangles));
-  for (auto& layer : mesh.layers) others.emplace_back(&layer, SurfaceAt(layer, mesh.triangles));
+  for_each_material(mesh, [&](auto& places) { others.emplace_back(&places, SurfaceAt(places, mesh.triangles)); });
   EditableMesh editable(mesh.positions, mesh.triangles);
   std::vector<Edge> split;
   for (const Edge& edge : edges) {
     if (editable.split(edge[0], edge[1]) < 0) continue;
     split.push_back(edge);
-    add_middle(edge, torn, mesh);
+    add_middle_attributes(edge[0], edge[1], farthest_material(edge, torn, mesh.positions), mesh);
     sizes.add_middle(edge);
   }
   std::vector<Vec3> born(mesh.positions.begin() + static_cast<std::ptrdiff_t>(old_count), mesh.positions.end());

@@ -177,8 +177,7 @@ class MeshUnderRepair {
     MaterialCarrier(mesh_.positions, gone, fresh_.field, particles, settings)
         .append_material(mesh_, std::span(mend_.positions).subspan(old_count_),
                          std::span(mend_.normals).subspan(old_count_), mesh_);
-    mesh_.velocities.resize(count, Vec3::Zero());
-    mesh_.ids.resize(count, 0);
+    resize_attributes(count, mesh_);
   }
 
   // Returns which vertices the triangles that are left use.
