@@ -12,6 +12,7 @@
 
 #include "scene_file_helpers.h"
 #include "scenes/nearest_name.h"
+#include "scenes/settings_in_metres.h"
 
 namespace flowskin::scenes::scene_file_test {
 namespace {
@@ -220,6 +221,37 @@ TEST(SceneFile, FluidsAndSinksReachTheScene) {
   EXPECT_EQ(again.bodies.at(0).body.fluid, "honey");
   ASSERT_EQ(again.sinks.size(), 1U);
   EXPECT_EQ(write_scene(again), write_scene(scene));
+}
+
+/// Each word of the file reaches the tracker, and lengths are metres there.
+TEST(SceneFile, TrackingKeysReachTheTrackersSettings) {
+  const auto settings_of = [](const std::string& keys) {
+    return settings_in_metres(parse(small_scene("\"tracking\": {" + keys + "}")));
+  };
+  using tracking::Integrator;
+  using tracking::SmallParts;
+  const std::vector<std::pair<std::string, Integrator>> integrators{
+      {"euler", Integrator::euler}, {"rk2", Integrator::rk2}, {"rk4", Integrator::rk4}};
+  for (const auto& [name, value] : integrators) {
+    EXPECT_EQ(settings_of("\"integrator\": \"" + name + "\"").integrator, value);
+    EXPECT_EQ(name_of(value), name);
+  }
+  const std::vector<std::pair<std::string, SmallParts>> parts{
+      {"keep", SmallParts::keep}, {"drop", SmallParts::drop}, {"balls", SmallParts::balls}};
+  for (const auto& [name, value] : parts)
+    EXPECT_EQ(settings_of("\"small_parts\": \"" + name + "\"").small_parts, value);
+  EXPECT_TRUE(settings_of(R"("fairing_springs": "variable")").variable_springs);
+  EXPECT_FALSE(settings_of(R"("fairing_springs": "constant")").variable_springs);
+  const tracking::TrackerSettings settings =
+      settings_of(R"("radius": 3, "edge_length": 0.5, "smallest_part": 8, "max_slip": 2, "threshold": 7)");
+  EXPECT_EQ(settings.spacing, 0.1);
+  EXPECT_DOUBLE_EQ(settings.field.radius, 0.3);
+  EXPECT_EQ(settings.field.threshold, 7);
+  EXPECT_DOUBLE_EQ(settings.edge_length, 0.05);
+  EXPECT_DOUBLE_EQ(settings.smallest_part, 0.008);
+  EXPECT_DOUBLE_EQ(settings.max_slip, 0.2);
+  EXPECT_EQ(settings_of("").velocity, "hybrid");
+  EXPECT_EQ(settings_of("").max_slip, 0);
 }
 
 TEST(SceneFile, TheDocumentedTableIsTheProgramsOwn) {

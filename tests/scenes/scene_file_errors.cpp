@@ -1,7 +1,10 @@
 // Every kind of mistake in a scene file, with the parts that its message must have.
 #include <gmock/gmock.h>
 
+#include <array>
 #include <fstream>
+#include <stdexcept>
+#include <type_traits>
 
 #include "scene_file_helpers.h"
 
@@ -89,7 +92,7 @@ TEST(SceneFileErrors, NumbersOutOfRange) {
               AllOf(HasSubstr("frames is the number 0"), HasSubstr("from 1 to")));
   EXPECT_THAT(error_of(small_scene(R"("frames": 1e99)")), HasSubstr("frames"));
   EXPECT_THAT(error_of(small_scene(R"("render": {"ground_color": [0, 0, 2]})")), HasSubstr("from 0 to 1"));
-  EXPECT_THAT(error_of(small_scene(R"("simulation": {"support_radius": 0.5})")), HasSubstr("from 1.2 to 4 (spacings)"));
+  EXPECT_THAT(error_of(small_scene(R"("simulation": {"support_radius": 0.5})")), HasSubstr("from 1.5 to 4 (spacings)"));
 }
 
 TEST(SceneFileErrors, MissingRequiredKeys) {
@@ -123,6 +126,31 @@ TEST(SceneFileErrors, WrongNames) {
   EXPECT_THAT(error_of(small_scene(R"("texture": {"stretch_limit": "four"})")), HasSubstr("texture.stretch_limit"));
   EXPECT_THAT(error_of(R"({"particles": {"source": "simulaton", "spacing": 0.1}, "bodies": []})"),
               HasSubstr("did you mean \"simulation\"?"));
+}
+
+/// Settings that are words are enumerations from here on: a misspelt one is refused and never becomes a default.
+TEST(SceneFileErrors, MisspeltWordsNameTheNearest) {
+  const std::vector<std::array<std::string, 3>> cases{
+      {"tracking", R"("integrator": "rk3")", "did you mean \"rk2\"?"},
+      {"tracking", R"("small_parts": "bals")", "did you mean \"balls\"?"},
+      {"tracking", R"("fairing_springs": "variabel")", "did you mean \"variable\"?"},
+      {"simulation", R"("density_method": "sumation")", "did you mean \"summation\"?"},
+      {"simulation", R"("viscosity_form": "moris")", "did you mean \"morris\"?"},
+      {"simulation", R"("viscosity_solver": "implict")", "did you mean \"implicit\"?"},
+      {"simulation", R"("kernel": "wendland")", "expected one of: wendland_c2, cubic_spline"},
+  };
+  for (const auto& [section, key, answer] : cases)
+    EXPECT_THAT(error_of(small_scene("\"" + section + "\": {" + key + "}")), HasSubstr(answer)) << key;
+  static_assert(std::is_enum_v<decltype(TrackingSpec::integrator)> &&
+                std::is_enum_v<decltype(TrackingSpec::small_parts)>);
+  static_assert(std::is_enum_v<decltype(RecordedSpec::ids)>);
+}
+
+/// A value without a name, which only a program can set, is not written as if it were the default.
+TEST(SceneFileErrors, ValuesWithoutANameAreNotWritten) {
+  Scene scene = parse(small_scene());
+  scene.tracking.integrator = static_cast<tracking::Integrator>(7);
+  EXPECT_THROW(write_scene(scene), std::logic_error);
 }
 
 TEST(SceneFileErrors, KeysOfAnotherKindOfObject) {
