@@ -6,10 +6,9 @@
 
 namespace flowskin::scenes {
 
-using Source = ParticlesSpec::Source;
-using Ids = RecordedSpec::Ids;
-
 namespace {
+
+using Source = ParticlesSpec::Source;
 
 Condition source_is(const Scene& scene, Source source, const char* name) {
   return {fmt::format("particles.source \"{}\"", name), [&scene, source] { return scene.particles.source == source; }};
@@ -60,6 +59,7 @@ void add_motion_keys(KeyTable& table, Scene& scene) {
 }
 
 void add_recorded_keys(KeyTable& table, Scene& scene) {
+  using Ids = RecordedSpec::Ids;
   RecordedSpec& files = scene.particles.recorded;
   const Condition recorded = source_is(scene, Source::recorded, "recorded");
   table

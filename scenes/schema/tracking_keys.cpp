@@ -6,10 +6,10 @@
 
 namespace flowskin::scenes {
 
+namespace {
+
 using tracking::Integrator;
 using tracking::SmallParts;
-
-namespace {
 
 std::vector<std::string> method_names() {
   std::vector<std::string> names{automatic_velocity};
@@ -25,7 +25,7 @@ const std::vector<std::pair<const char*, Integrator>>& integrators() {
 
 }  // namespace
 
-std::string name_of(Integrator integrator) {
+std::string name_of(tracking::Integrator integrator) {
   for (const auto& [name, value] : integrators()) {
     if (value == integrator) return name;
   }

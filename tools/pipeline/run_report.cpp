@@ -12,7 +12,7 @@ namespace flowskin::tools {
 
 namespace {
 
-std::string surface_line(const scenes::Scene& scene, const tracking::Tracker& tracker) {
+std::string surface_line(const tracking::Tracker& tracker) {
   const tracking::TrackerSettings& settings = tracker.settings();
   return fmt::format(
       "surface: {} vertices, velocity {}, {}, effective radius {:.4g} m, threshold {:.4g}, edge {:.4g} m, {} "
@@ -41,7 +41,7 @@ std::vector<std::string> lines_at_start(const scenes::Scene& scene, const scenes
   lines.push_back(fmt::format("scene {}: {} frames at {} per second, {} particles, {} thread(s)", scene.name,
                               scene.frames, scene.frame_rate, source.state().positions.size(), omp_get_max_threads()));
   if (const auto summary = source.statistics().summary; !summary.empty()) lines.push_back("particles: " + summary);
-  if (surface) lines.push_back(surface_line(scene, surface->tracker()));
+  if (surface) lines.push_back(surface_line(surface->tracker()));
   return lines;
 }
 
