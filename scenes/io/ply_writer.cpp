@@ -79,11 +79,11 @@ void add_attribute_properties(ByteBuffer& ply, const Frame& frame, const IdColum
 }
 
 /// One column or a few: what is written of an item.
-using Columns = std::vector<std::function<void(std::size_t)>>;
+using ItemColumns = std::vector<std::function<void(std::size_t)>>;
 
 template <class Frame>
-Columns columns_of(ByteBuffer& ply, const Frame& frame, const IdColumn& id_column) {
-  Columns columns;
+ItemColumns columns_of(ByteBuffer& ply, const Frame& frame, const IdColumn& id_column) {
+  ItemColumns columns;
   for_each_file_attribute(frame, [&](const FileAttribute& attribute, const auto& values) {
     using T = typename std::remove_cvref_t<decltype(values)>::value_type;
     if (attribute.optional && values.empty()) return;
@@ -102,7 +102,7 @@ Columns columns_of(ByteBuffer& ply, const Frame& frame, const IdColumn& id_colum
 /// All items, one after the other.
 template <class Frame>
 void add_items(ByteBuffer& ply, const Frame& frame, std::size_t count, const IdColumn& id_column) {
-  const Columns columns = columns_of(ply, frame, id_column);
+  const ItemColumns columns = columns_of(ply, frame, id_column);
   for (std::size_t i = 0; i < count; ++i)
     for (const auto& add : columns) add(i);
 }
