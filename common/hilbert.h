@@ -14,7 +14,7 @@ namespace flowskin {
 /// Along each edge the curve passes through at most 2^kMostHilbertBits cells: three times as many bits fit in 64.
 inline constexpr int kMostHilbertBits = 21;
 
-/// Index of a cell along the Hilbert curve through a cube of 2^bits cells a side (bits from 1 to kMostHilbertBits)
+/// Index of a cell along the Hilbert curve through a cube of 2^bits cells per side (bits from 1 to kMostHilbertBits)
 /// [J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707, 2004].
 std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z, int bits);
 

@@ -113,7 +113,7 @@ struct RenderSpec {
   bool enabled = true;
   CameraSpec camera;
   int width = 960, height = 540;   ///< pixels
-  int samples = 4;                 ///< rays a pixel
+  int samples = 4;                 ///< rays per pixel
   std::string style = "textured";  ///< textured, solid (colour of the rest position), normals, confidence
   bool ground = true;              ///< A ground plane that catches shadows.
   double ground_height = 0;        ///< m

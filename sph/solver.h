@@ -14,7 +14,7 @@
 
 namespace flowskin::sph {
 
-/// The fluid particles at one time, in order of ascending id. All arrays have one entry a particle.
+/// The fluid particles at one time, in order of ascending id. All arrays have one entry per particle.
 struct FluidState {
   double time = 0;  ///< s
   std::vector<std::uint64_t> ids;

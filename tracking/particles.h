@@ -17,8 +17,8 @@ class Wall;  // tracking/field/field_walls.h
 /// What the fluid lies on. A wall that moves knows by itself where it is at each time; all states of a source share it.
 using Walls = std::vector<std::shared_ptr<const Wall>>;
 
-/// Particles at one time, in order of ascending id; all arrays have one entry a particle. From a recording, less may be
-/// known: docs/track.md says what the tracker makes of it.
+/// Particles at one time, in order of ascending id; all arrays have one entry per particle. From a recording, less may
+/// be known: docs/track.md says what the tracker makes of it.
 struct Particles {
   double time = 0;  ///< s
   std::vector<std::uint64_t> ids;
@@ -27,7 +27,7 @@ struct Particles {
   std::vector<Vec3> rest_positions;  ///< Place of the material in the first frame (m); empty: unknown.
   std::vector<double> weights{};     ///< Share of each in the field; empty: 1 each.
   /// Places of the material at other times (m), those that SurfaceMesh::layers stand for, in the same order: one entry
-  /// a particle each, or none: unknown.
+  /// per particle, or none: unknown.
   std::vector<std::vector<Vec3>> layers{};
   bool has_lasting_ids = true;  ///< An id names the same particle in the next state; false: it only counts.
   Walls walls{};                ///< Empty: there are none, or none that the surface should know of.

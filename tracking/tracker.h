@@ -77,7 +77,7 @@ void visit_state(Archive& archive, SurfaceMesh& m) {
 struct TrackerState {
   Particles particles;  ///< Of the last call.
   SurfaceMesh mesh;
-  std::vector<double> rest_lengths;  ///< Of the springs [FMM13, 3.4], one an edge (m).
+  std::vector<double> rest_lengths;  ///< Of the springs [FMM13, 3.4], one per edge (m).
   int tolerated = 0;                 ///< Regions that a fresh mesh did not get right either.
   bool velocities_known = false;     ///< The mesh's velocities are the method's, at the time of the particles.
   TrackerReport report;

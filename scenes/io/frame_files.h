@@ -10,13 +10,13 @@
 
 namespace flowskin::scenes {
 
-/// frame_NNNN.obj: v, vt (one a corner, equal ones shared), vn, usemtl; `material_file` is the MTL's name beside it.
+/// frame_NNNN.obj: v, vt (one per corner, equal ones shared), vn, usemtl; `material_file` is the MTL's name beside it.
 void write_surface_obj(const std::filesystem::path& file, const SurfaceFrame& frame, const std::string& material_file);
 /// The MTL that all frames share; `texture_file` is the image's name relative to it.
 void write_material(const std::filesystem::path& file, const std::string& texture_file);
 /// Binary little-endian PLY: x y z, nx ny nz, s t, texture_u texture_v, red green blue, vx vy vz, rest_x rest_y rest_z,
 /// id, and where the frame has them confidence and confidence_strong, s2 t2 texture_u2 texture_v2, texture_blend; faces
-/// with a texcoord list a corner, and texcoord2 likewise.
+/// with a texcoord list per corner, and texcoord2 likewise.
 void write_surface_ply(const std::filesystem::path& file, const SurfaceFrame& frame);
 /// ParaView's PolyData, binary: point arrays Normals, TCoords, color, velocity, rest_position, id, and where the frame
 /// has them confidence (weak and strong), TCoords2, texture_blend.

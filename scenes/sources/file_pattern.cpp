@@ -196,7 +196,7 @@ NumberedFiles files_of_patterns(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i + 1 < files.paths.size(); ++i) {
     const auto a = split_at_digits(files.paths[i].filename().string());
     if (a == split_at_digits(files.paths[i + 1].filename().string()))
-      throw InputError(fmt::format("{}: has the same number as {}; a sequence has one file a number",
+      throw InputError(fmt::format("{}: has the same number as {}; a sequence has one file per number",
                                    files.paths[i + 1].string(), files.paths[i].string()));
   }
   for (const std::string& number : digits) {

@@ -64,7 +64,7 @@ class SequenceOpener {
     for (const auto& [time, path] : entries) {
       if (!file_times_.empty() && time == file_times_.back())
         throw InputError(
-            fmt::format("{}: {} and {} have the same time {} s; one file a time is expected (merge the "
+            fmt::format("{}: {} and {} have the same time {} s; one file per time is expected (merge the "
                         "parts in ParaView)",
                         file.string(), sequence_.files.back().string(), path.string(), time));
       file_times_.push_back(time);
@@ -113,8 +113,8 @@ class SequenceOpener {
       by_steps(default_interval);
       if (sequence_.files.size() > 1)
         sequence_.notes.push_back(
-            fmt::format("{}: 1/30 s between files is assumed; --frame-rate or --time-step says it",
-                        first_has_time ? "the times in the files do not ascend" : "the files tell no times"));
+            fmt::format("{}: 1/30 s between files is assumed; --frame-rate or --time-step sets it",
+                        first_has_time ? "the times in the files do not ascend" : "the files give no times"));
     }
   }
 
@@ -165,10 +165,10 @@ class SequenceOpener {
       sequence_.ids = Ids::none;
       if (!census.same_count) {
         sequence_.notes.emplace_back(
-            "the particles have no ids and their number changes: nobody knows which is which from file to file");
+            "the particles have no ids and their number changes: it is not known which is which from file to file");
       } else if (!order_is_lasting()) {
         sequence_.warnings.emplace_back(
-            "the particles have no ids, and their order changes from file to file: nobody knows which is which");
+            "the particles have no ids, and their order changes from file to file: it is not known which is which");
       } else {
         sequence_.ids = Ids::order;
         sequence_.notes.emplace_back(
@@ -219,7 +219,7 @@ ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k)
   if (sequence.ids == ParticleSequence::Ids::order && count != first_count)
     throw InputError(
         fmt::format("{}: {} particles where the first file has {}, and they have no ids (column \"id\") to "
-                    "find them again by; --no-ids goes without",
+                    "find them again by; --no-ids does without them",
                     sequence.files[k].string(), count, first_count));
   return file;
 }

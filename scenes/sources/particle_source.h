@@ -16,7 +16,7 @@ namespace flowskin::scenes {
 
 using sph::Vec3;
 
-/// Particles at one time, in order of ascending id; all arrays have one entry a particle.
+/// Particles at one time, in order of ascending id; all arrays have one entry per particle.
 struct ParticleState {
   double time = 0;  ///< s
   std::vector<std::uint64_t> ids;
@@ -29,7 +29,7 @@ struct ParticleState {
   std::vector<std::uint8_t> fluids{};  ///< Index of each particle's fluid; empty: there is only one
   std::vector<float> viscosities{};    ///< Kinematic (m^2/s); empty: the same for all
   std::size_t earlier_count = 0;       ///< Of blended states: so many particles, the first, are of the earlier one.
-  bool has_velocities = true;          ///< false: nobody knows them, they are zero
+  bool has_velocities = true;          ///< false: unknown, and zero
   bool has_material = true;            ///< false: rest positions are unknown and stand for the positions
   bool has_lasting_ids = true;         ///< false: ids do not name the same particle in the next state
   tracking::Walls walls{};             ///< Of the scene; the same in all states, so not archived.

@@ -14,8 +14,8 @@ namespace flowskin::scenes {
 /// velocities; one that is in only one of the two files goes straight on for the half of the interval next to that
 /// file. A particle that jumps (tracking::JumpRule) is one that goes and one that comes. What the files do not tell is
 /// made up for: velocities from differences over three files, rest positions from the first file that holds the
-/// particle, or the first after a jump. Where nobody knows who is who, the particles of both files are there, each
-/// moved by its velocity as far as it has one, with weights that go from one file to the other.
+/// particle, or the first after a jump. Where it is unknown which particle is which, the particles of both files are
+/// there, each moved by its velocity as far as it has one, with weights that go from one file to the other.
 class RecordedSource : public ParticleSource {
  public:
   /// @throws InputError naming the file and what is wrong with it or with the sequence.

@@ -30,7 +30,7 @@ sph::SimulationSetup setup_of(const Scene& scene) {
 std::string viscosity_solver(const sph::SolverSettings& settings, const sph::SolverStatistics& statistics) {
   if (settings.viscosity_solver != sph::ViscositySolver::implicit) return "explicit";
   const auto steps = static_cast<double>(std::max<std::uint64_t>(1, statistics.steps));
-  return fmt::format("implicit ({:.1f} iterations a step, tolerance {:g}: velocities to {:.1e} m/s in the last step)",
+  return fmt::format("implicit ({:.1f} iterations per step, tolerance {:g}: velocities to {:.1e} m/s in the last step)",
                      static_cast<double>(statistics.viscosity_iterations) / steps, settings.viscosity_tolerance,
                      statistics.viscosity_tolerance);
 }

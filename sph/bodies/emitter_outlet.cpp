@@ -45,7 +45,8 @@ EmitterOutlet::EmitterOutlet(const Emitter& emitter, double spacing, const std::
     make_shadow(emitter, spacing, name);
   }
   if (offsets_.empty()) {
-    throw SettingsError(name + ": it is too small for a particle at this spacing: make it larger or the spacing less");
+    throw SettingsError(name +
+                        ": it is too small for a particle at this spacing: make it larger or the spacing smaller");
   }
 }
 

@@ -31,7 +31,7 @@ void check_sink(const Sink& sink, const std::string& name) {
     throw SettingsError(name + ": the lower corner of its box must be smaller than the upper one along every axis");
   }
   if (sink.shape == Sink::Shape::mesh && !is_closed(sink.mesh)) {
-    throw SettingsError(name + ": its mesh is not closed, so nobody knows what is inside");
+    throw SettingsError(name + ": its mesh is not closed, so it has no inside; close its holes");
   }
 }
 

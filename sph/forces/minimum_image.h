@@ -21,7 +21,7 @@ struct MinimumImage {
     }
   }
 
-  /// x_i - x_j of eight particles i, one a lane, and one j.
+  /// x_i - x_j of eight particles i, one per lane, and one j.
   template <bool periodic, typename Pack>
   Difference difference(const Float8& x, const Float8& y, const Float8& z, const Pack& j) const {
     Difference d{x - broadcast(j.x), y - broadcast(j.y), z - broadcast(j.z)};

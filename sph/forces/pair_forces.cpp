@@ -60,7 +60,7 @@ float PairCoefficients::pack_pressure(float compression) const {
 
 namespace {
 
-// The particles of one cluster, one a lane; lanes without a particle repeat the first one and are not written back.
+// The particles of one cluster, one per lane; lanes without a particle repeat the first one and are not written back.
 struct Targets {
   Float8 x, y, z, vx, vy, vz, compression, pressure;
 

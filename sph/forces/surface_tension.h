@@ -55,7 +55,7 @@ struct SurfaceTensionData {
   std::span<const WallPack> walls;
   std::span<const float> wall_adhesions;  ///< adhesion times area (m^2); empty where no wall attracts
   const NeighborLists* wall_lists;
-  std::span<SurfaceStress> stresses;  ///< room for one a particle
+  std::span<SurfaceStress> stresses;  ///< room for one per particle
   std::span<ParticleRates> rates;     ///< in and out
 };
 

@@ -14,7 +14,7 @@ class HilbertOrder {
  public:
   /// order()[k] is the index of the point that becomes the k-th. Points of one cell keep their order.
   /// @param cell_size edge of the curve's cells, in the unit of the points; made larger where 2^21 cells do not reach
-  /// @param scratch is used on the way and grows to at least 20 bytes a point
+  /// @param scratch is used on the way and grows to at least 20 bytes per point
   void compute(const PointView& points, float cell_size, std::vector<char>& scratch);
   void compute(const PointView& points, float cell_size) {
     std::vector<char> scratch;

@@ -51,7 +51,7 @@ class NeighborLists {
     return {blocks_[cluster / clusters_per_block].data() + range.begin, range.count};
   }
 
-  /// Mean number of entries a cluster.
+  /// Mean number of entries per cluster.
   double mean_length() const;
   std::size_t memory_bytes() const;
 
@@ -70,9 +70,9 @@ class NeighborLists {
   struct HiddenRange {
     std::uint32_t begin = 0, count = 0, hidden = 0;
   };
-  std::vector<Range> ranges_;                       // one a cluster
+  std::vector<Range> ranges_;                       // one per cluster
   std::vector<std::vector<std::uint32_t>> blocks_;  // entries of the clusters of one block: no two threads share one
-  std::vector<Range> part_ranges_;                  // in the parts of the block; one a cluster, empty without sight
+  std::vector<Range> part_ranges_;                  // in the parts of the block; one per cluster, empty without sight
   std::vector<std::vector<HiddenRange>> parts_;     // of the clusters of one block
 };
 

@@ -117,7 +117,7 @@ void check_fluids(const SimulationSetup& setup) {
   }
   if (is_mixture(setup.fluids) && setup.settings.viscosity_form == ViscosityForm::morris) {
     throw SettingsError(
-        "viscosity_form morris does not know several fluids or viscosities that depend on the shear rate: choose "
+        "viscosity_form morris does not support several fluids or viscosities that depend on the shear rate: choose "
         "monaghan");
   }
 }

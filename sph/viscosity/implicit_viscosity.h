@@ -51,11 +51,11 @@ class ImplicitViscosity {
   std::size_t memory_bytes() const;
 
  private:
-  /// A vector of three components a particle, one cluster of particles an entry.
+  /// A vector of three components per particle, one cluster of particles per entry.
   struct Lanes3 {
     Float8 x{}, y{}, z{};
   };
-  /// A symmetric 3 x 3 matrix a particle.
+  /// A symmetric 3 x 3 matrix per particle.
   struct Blocks {
     Float8 xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
   };
@@ -74,7 +74,7 @@ class ImplicitViscosity {
 
   std::vector<Lanes3> correction_, residual_, image_;  // x - v; r; A p, then M^-1 r. The direction p is in the packs
   std::vector<Blocks> preconditioner_;                 // M^-1: the inverse diagonal blocks of the matrix
-  std::vector<Sums> partial_sums_;                     // of dot products, one a cluster
+  std::vector<Sums> partial_sums_;                     // of dot products, one per cluster
 };
 
 }  // namespace flowskin::sph

@@ -92,9 +92,9 @@ class BoundaryParticles {
   PointClusters clusters_;
   WallGuard guard_;                                    // of the resting walls
   ThinWalls thin_;                                     // of the resting walls
-  std::vector<std::vector<std::uint32_t>> triangles_;  // of the resting walls: one list a cluster
+  std::vector<std::vector<std::uint32_t>> triangles_;  // of the resting walls: one list per cluster
   std::vector<MovingWall> movers_;
-  std::vector<NearGap> near_gap_;  // one entry a cluster
+  std::vector<NearGap> near_gap_;  // one entry per cluster
   double greatest_speed_ = 0, last_shift_ = 0, build_time_ = 0, time_ = 0;
 };
 

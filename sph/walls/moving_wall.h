@@ -82,8 +82,8 @@ class MovingWall {
   ThinWalls thin_;
   Box rest_box_;
   Pose before_, now_, build_;
-  std::vector<std::vector<std::uint32_t>> triangles_;  // one list a cluster
-  std::vector<std::uint8_t> near_gap_;                 // one entry a cluster
+  std::vector<std::vector<std::uint32_t>> triangles_;  // one list per cluster
+  std::vector<std::uint8_t> near_gap_;                 // one entry per cluster
 };
 
 }  // namespace flowskin::sph

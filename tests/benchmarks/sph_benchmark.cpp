@@ -17,7 +17,7 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// The yardstick: density, then pressure and viscosity, over ready-made Verlet lists with one list a particle (49
+// The yardstick: density, then pressure and viscosity, over ready-made Verlet lists with one list per particle (49
 // entries, of which 28 in reach), one thread, float, nothing else: no search, no walls, no integration.
 class ReferenceLoop {
  public:

@@ -41,7 +41,7 @@ void put(std::string& bytes, T value, bool big_endian) {
   bytes += part;
 }
 
-/// Every type, a list between the scalars, an element that nobody knows, and faces with three to five corners.
+/// Every type, a list between the scalars, an unknown element, and faces with three to five corners.
 std::string header(const std::string& format, const std::string& line_end) {
   std::string text;
   for (const char* line : {"ply",

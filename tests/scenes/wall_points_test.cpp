@@ -39,7 +39,7 @@ TEST(WallPoints, FacesInCommonCountOnce) {
   ASSERT_EQ(twice.size(), 1U);
   // A few more fill what the sampler takes for gaps.
   EXPECT_NEAR(double(twice.front()->positions().size()) / double(once.front()->positions().size()), 1, 0.03);
-  // About one point a spacing squared: the flight of stairs has 11.688 m^2.
+  // About one point per square spacing: the flight of stairs has 11.688 m^2.
   const double expected = 11.688 / (0.05 * 0.05);
   EXPECT_NEAR(double(once.front()->positions().size()) / expected, 1, 0.1);
 }

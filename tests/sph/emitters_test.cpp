@@ -116,7 +116,7 @@ TEST(Emitters, PourAreaTimesSpeedTimesTimeWithoutClumps) {
 TEST(Emitters, StopAtTheirMostParticles) {
   SimulationSetup setup;
   setup.settings.spacing = 0.05;
-  setup.emitters.push_back(rectangle(0.2, 0.2));  // 16 a layer
+  setup.emitters.push_back(rectangle(0.2, 0.2));  // 16 per layer
   setup.emitters[0].max_particles = 100;
   setup.settings.gravity = Vec3::Zero();
   Solver solver(setup);

@@ -12,7 +12,7 @@
 namespace flowskin::surfaces {
 namespace {
 
-/// One of the lines: a number a frame, the larger the worse, and the limit above which it fails.
+/// One of the lines: a number per frame, the larger the worse, and the limit above which it fails.
 struct Line {
   const char* name;
   const char* heading;  ///< In the table.

@@ -37,7 +37,7 @@ TEST_F(ImageTest, PngIsWellFormed) {
   EXPECT_EQ(png.substr(12, 4), "IHDR");
   EXPECT_EQ(static_cast<int>(png[19]), 37);
   EXPECT_EQ(static_cast<int>(png[23]), 19);
-  EXPECT_EQ(png.substr(24, 2), "\x08\x02") << "8 bits a channel, RGB";
+  EXPECT_EQ(png.substr(24, 2), "\x08\x02") << "8 bits per channel, RGB";
   EXPECT_EQ(png.substr(png.size() - 8, 4), "IEND");
 }
 
@@ -64,7 +64,7 @@ TEST_F(ImageTest, SaysWhatIsWrongWithAFile) {
   write_png(path("a.png"), sample_image(37, 19));
   const std::string png = read_text(path("a.png"));
   message_of<InputError>([&] { read_image(write_text("cut.png", png.substr(0, png.size() / 2))); });
-  std::string huge = png;  // promises 2^24 pixels a row
+  std::string huge = png;  // promises 2^24 pixels per row
   huge[16] = 1;
   EXPECT_THROW(read_image(write_text("huge.png", huge)), InputError);
   message_of<RunError>([&] { write_png(path("b.png"), Image{3, 3, std::vector<Color>(8)}); });

@@ -16,7 +16,7 @@
 namespace flowskin::tools::texture_generations_test {
 namespace {
 
-/// The unit cube, n by n squares a face, faces not joined; `sheared` along x by `shear` times y.
+/// The unit cube, n by n squares per face, faces not joined; `sheared` along x by `shear` times y.
 tracking::SurfaceMesh sheared_cube(int n, double shear) {
   tracking::SurfaceMesh mesh;
   for (int axis = 0; axis < 3; ++axis)

@@ -1,4 +1,4 @@
-// Particles whose paths nobody knows: fields that go from one state's to the other's, and surfaces tracked in them.
+// Particles whose paths are unknown: fields that go from one state's to the other's, and surfaces tracked in them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ Vec3 velocity_at(const Vec3& x, double t) {
 
 enum Known { nothing = 0, velocities = 1, everything = 2 };
 
-/// The particles at a time. Without lasting ids their order changes as well, so that nobody can go by it.
+/// The particles at a time. Without lasting ids their order changes as well, so that it tells nothing.
 Particles state_at(const std::vector<Vec3>& start, double t, Known known) {
   Particles particles = particles_at(start);
   particles.time = t;
@@ -137,7 +137,7 @@ double path_error(const SurfaceMesh& mesh, const Vec3& drift, double t) {
   return std::sqrt(sum / static_cast<double>(mesh.positions.size()));
 }
 
-/// Path error after a second (2.3 spacings) at these many states a second, relative to the path.
+/// Path error after a second (2.3 spacings) at these many states per second, relative to the path.
 double translation_error(const std::string& method, int states, Known known) {
   const std::vector<Vec3> start = ellipsoid();
   const Vec3 drift(2, -1, 0.5);

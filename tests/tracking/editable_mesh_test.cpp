@@ -27,7 +27,7 @@ int vertex_at(const SurfaceGeometry& surface, const Vec3& x) {
   return -1;
 }
 
-/// A box of 4 x 4 squares a face, and three neighbours in the middle of its upper face.
+/// A box of 4 x 4 squares per face, and three neighbours in the middle of its upper face.
 struct Box {
   SurfaceGeometry surface = welded_box(4);
   int middle = vertex_at(surface, {2, 4, 2}), beside = vertex_at(surface, {3, 4, 2}),

@@ -143,7 +143,7 @@ TEST(Layers, BadOnesAreRefused) {
     return std::string();
   };
   particles.layers = {{Vec3::Zero()}};
-  EXPECT_NE(message().find("a layer must have one entry a particle, but has 1 for"), std::string::npos) << message();
+  EXPECT_NE(message().find("a layer must have one entry per particle, but has 1 for"), std::string::npos) << message();
   particles.layers = {particles.positions};
   particles.layers[0][3].y() = std::nan("");
   EXPECT_NE(message().find("the particle with id 3 has a place in a layer that is not finite"), std::string::npos);

@@ -129,7 +129,7 @@ Command render_command() {
       {"directory", &chosen->directory, "Run directory", {.is_required = true}},
       {"--width", &chosen->width, "Pixels (default: the scene's)", {.range = {{16, 16384}}}},
       {"--height", &chosen->height, "Pixels (default: the scene's)", {.range = {{16, 16384}}}},
-      {"--samples", &chosen->samples, "Rays a pixel (default: the scene's)", {.range = {{1, 4096}}}},
+      {"--samples", &chosen->samples, "Rays per pixel (default: the scene's)", {.range = {{1, 4096}}}},
       {"--camera", &chosen->camera, "Camera position x y z (m)", {.count = 3}},
       {"--look-at", &chosen->look_at, "Point the camera looks at, x y z (m)", {.count = 3}},
       {"--fov", &chosen->vertical_fov, "Vertical field of view (degrees)", {.range = {{1.0, 170.0}}}},

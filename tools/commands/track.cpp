@@ -27,7 +27,7 @@ using scenes::Vec3;
 struct TrackOptions {
   std::vector<fs::path> particles;  ///< files, patterns, a folder, or one .pvd
   std::optional<double> spacing, radius, edge_length, tile_size;
-  std::optional<double> frame_rate, time_step;  ///< files a second, s between files
+  std::optional<double> frame_rate, time_step;  ///< files per second, s between files
   bool no_ids = false;
   std::string texture, mapping;  ///< empty: the scene file's defaults
   std::string up = "y";          ///< or z
@@ -89,7 +89,7 @@ void set_times(const TrackOptions& options, ParticleSequence& sequence, scenes::
   const double all = std::floor(sequence.times.back() / sequence.interval + 1e-6);
   if (all > 1e6)
     throw InputError(
-        fmt::format("the files span {:.4g} s at {:.4g} s a frame: more than a million frames; is "
+        fmt::format("the files span {:.4g} s at {:.4g} s per frame: more than a million frames; is "
                     "--time-step right?",
                     sequence.times.back(), sequence.interval));
   scene.frames = static_cast<int>(all);
@@ -197,7 +197,7 @@ std::vector<Option> files_options(TrackOptions& chosen) {
       {"--edge-length", &chosen.edge_length, "Target edge of the mesh (m; default: 0.75 spacings)", {.range = lengths}},
       {"--frame-rate",
        &chosen.frame_rate,
-       "Files a second (default: the times in the files, else 30)",
+       "Files per second (default: the times in the files, else 30)",
        {.range = rates}},
       {"--time-step",
        &chosen.time_step,

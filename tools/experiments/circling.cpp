@@ -129,7 +129,7 @@ void plot_errors(const PaperRun& run, const Body& ball, const Body& pair, Experi
   run.write_plot_sheet("circling", "Fig. 9: error by the number of revolutions", sheet, report);
 }
 
-// A row a method, a column a number of revolutions, as in Fig. 4.
+// One row per method, one column per number of revolutions, as in Fig. 4.
 void draw(const PaperRun& run, const Body& body, Integrator integrator, const std::string& caption,
           ExperimentReport& report) {
   std::vector<std::string> methods{"total", "curvature"};

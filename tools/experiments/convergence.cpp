@@ -70,7 +70,7 @@ Claim judge(const PaperRun& run, const Case& what, const std::vector<Ride>& ride
 Plot error_plot(const Case& what, const std::vector<Ride>& rides) {
   Plot plot;
   plot.title = fmt::format("{}, {}", what.scene, what.method);
-  plot.x_label = "steps a revolution";
+  plot.x_label = "steps per revolution";
   plot.y_label = "path error (sigma)";
   plot.log_x = plot.log_y = true;
   plot.note = fmt::format("orders are fitted to errors above {}", short_number(kFloor));
@@ -112,8 +112,8 @@ ExperimentReport convergence_experiment(const PaperRun& run) {
     sheet.plots.push_back(error_plot(what, rides));
   }
   run.write_csv("convergence", rides_table, report);
-  run.write_plot_sheet("convergence", "Path error by steps a revolution", sheet, report);
-  report.tables.emplace_back("Path error (sigma) by steps a revolution", table);
+  run.write_plot_sheet("convergence", "Path error by steps per revolution", sheet, report);
+  report.tables.emplace_back("Path error (sigma) by steps per revolution", table);
   return report;
 }
 

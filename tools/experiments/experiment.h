@@ -71,7 +71,7 @@ ExperimentReport ring_experiment(const PaperRun& run);         ///< Figs. 6, 7
 ExperimentReport springs_experiment(const PaperRun& run);      ///< Sec. 5: variable spring constants.
 ExperimentReport targets_experiment(const PaperRun& run);      ///< What this project promises on the ring.
 ExperimentReport convergence_experiment(const PaperRun& run);  ///< Step counts and order.
-ExperimentReport timing_experiment(const PaperRun& run);       ///< Milliseconds a step.
+ExperimentReport timing_experiment(const PaperRun& run);       ///< Milliseconds per step.
 ExperimentReport weights_experiment(const PaperRun& run);      ///< The weight of the total velocity in `curvature`.
 ExperimentReport stairs_experiment(const PaperRun& run);       ///< Figs. 10, 11
 

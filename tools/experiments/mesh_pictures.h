@@ -19,7 +19,7 @@ class MeshPainter {
 
   /// With the scene's texture. `mesh.rest_positions` say where the texture was fixed at the start.
   Image textured(const tracking::SurfaceMesh& mesh) const;
-  /// Coloured by `errors` (one a vertex): from blue (0) over white to red (`largest` and more).
+  /// Coloured by `errors` (one per vertex): from blue (0) over white to red (`largest` and more).
   Image colored(const tracking::SurfaceMesh& mesh, const std::vector<double>& errors, double largest) const;
 
  private:

@@ -13,7 +13,7 @@ struct ResultTable {
   std::vector<std::string> columns;
   std::vector<std::vector<Cell>> rows;
 
-  /// @throws std::logic_error where the row has not one cell a column.
+  /// @throws std::logic_error where the row has not one cell per column.
   void add(std::vector<Cell> row);
   /// Comma separated, one header line; numbers read back to the same value, "nan" and "inf" for those.
   /// @throws std::logic_error where a text holds a comma, a quote or a line break.

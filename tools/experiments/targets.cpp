@@ -1,4 +1,4 @@
-// What this project promises on the ring of three particles [FMM13, Fig. 6], with 240 steps a revolution and RK4.
+// What this project promises on the ring of three particles [FMM13, Fig. 6], with 240 steps per revolution and RK4.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ Claim judge(const Target& target, const std::vector<Ride>& rides) {
     reason += "Without fairing the target is met: what is left is the drift of the fairing, not of the velocity.";
   return {"target",
           fmt::format(
-              "{} on {}: path error after {} revolutions at most {} sigma ({} steps a revolution, {}, {} iterations "
+              "{} on {}: path error after {} revolutions at most {} sigma ({} steps per revolution, {}, {} iterations "
               "of the fairing with variable springs).",
               target.method, target.scene, target.revolutions, short_number(target.most), settings.steps_per_period,
               integrator_name(settings.integrator), settings.fairing_iterations),
@@ -89,7 +89,7 @@ ExperimentReport targets_experiment(const PaperRun& run) {
       "averaged over all vertices and steps.";
   ResultTable table = ride_table();
   Plot plot;
-  plot.title = "Path error, 240 steps a revolution";
+  plot.title = "Path error, 240 steps per revolution";
   plot.x_label = "revolutions";
   plot.y_label = "path error (sigma)";
   plot.log_y = true;

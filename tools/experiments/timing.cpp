@@ -1,4 +1,4 @@
-// Milliseconds a step, as the paper gives them for the scene of Fig. 6.
+// Milliseconds per step, as the paper gives them for the scene of Fig. 6.
 #include <fmt/format.h>
 #include <omp.h>
 
@@ -17,7 +17,7 @@ namespace flowskin::tools {
 namespace {
 
 // [FMM13, 4], 3.2 GHz Core i7, mesh size not given.
-constexpr double kPaperTotal = 32, kPaperCurvature = 73, kPaperFairing = 30;  // ms a step
+constexpr double kPaperTotal = 32, kPaperCurvature = 73, kPaperFairing = 30;  // ms per step
 constexpr int kIterations = 10;
 
 // Sets the number of threads until its end.
@@ -125,7 +125,7 @@ Claim solving_dominates(const StepTime& total, const StepTime& curvature) {
 ExperimentReport timing_experiment(const PaperRun& run) {
   const OneThread one_thread;
   ExperimentReport report;
-  report.title = "Time a step (Sec. 4)";
+  report.title = "Time per step (Sec. 4)";
   report.setup =
       "`ring_weak.json` with meshes of several sizes: Euler steps of 1/60 revolution on one thread, medians. Without "
       "fairing: velocity and projection; with: 10 iterations more. Times depend on the machine and what else it does.";
@@ -140,7 +140,7 @@ ExperimentReport timing_experiment(const PaperRun& run) {
   const std::vector<double> edges = run.quick ? std::vector<double>{0.3} : std::vector<double>{0.3, 0.15, 0.075};
   StepTime total, curvature;
   PlotSheet sheet;
-  sheet.title = "Milliseconds a step, one thread";
+  sheet.title = "Milliseconds per step, one thread";
   sheet.columns = int(edges.size());
   for (const double edge : edges) {
     scenes::Scene scene = run.scene("ring_weak");
@@ -158,8 +158,8 @@ ExperimentReport timing_experiment(const PaperRun& run) {
     sheet.plots.push_back(bars(run, times));
   }
   run.write_csv("timing", table, report);
-  run.write_plot_sheet("timing", "Milliseconds a step by mesh size", sheet, report);
-  report.tables.emplace_back("Milliseconds a step", table);
+  run.write_plot_sheet("timing", "Milliseconds per step by mesh size", sheet, report);
+  report.tables.emplace_back("Milliseconds per step", table);
   report.claims = {curvature_costs_more(total, curvature), solving_dominates(total, curvature)};
   return report;
 }

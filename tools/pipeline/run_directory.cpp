@@ -85,7 +85,7 @@ void RunLock::take(const RunDirectory& directory) {
   ::close(descriptor_);
   descriptor_ = -1;
   throw InputError(
-      fmt::format("another flowskin is just running into {}; wait for it, stop it, or give another folder "
+      fmt::format("another flowskin is already writing into {}; wait for it, stop it, or give another folder "
                   "to --out",
                   directory.root().string()));
 }

@@ -33,9 +33,8 @@ std::string TrackedSurface::warning() {
   warned_of_ghosts_ = true;
   return fmt::format(
       "at {:.4g} s particles are up to {:.3g} m from any of the state before, more than half the effective radius "
-      "({:.3g} m), and nobody knows which is which: the surface between the two states shows the fluid twice. Record "
-      "at "
-      "least {} times as many frames, write ids or velocities with the particles, or take a larger --radius",
+      "({:.3g} m), and it is not known which is which: the surface between the two states shows the fluid twice. "
+      "Record at least {} times as many frames, write ids or velocities with the particles, or take a larger --radius",
       tracker_.state().particles.time, report.mismatch, tracker_.settings().field.radius,
       std::ceil(report.mismatch / largest));
 }

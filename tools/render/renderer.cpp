@@ -65,7 +65,7 @@ void check_settings(const scenes::RenderSpec& settings) {
                                  settings.width, settings.height, max_size));
   }
   if (settings.samples < 1 || settings.samples > max_samples) {
-    throw InputError(fmt::format("render.samples is {}: expected 1 to {} a pixel", settings.samples, max_samples));
+    throw InputError(fmt::format("render.samples is {}: expected 1 to {} per pixel", settings.samples, max_samples));
   }
   if (!(settings.exposure > 0 && std::isfinite(settings.exposure))) {
     throw InputError(fmt::format("render.exposure is {}: expected a positive number", settings.exposure));

@@ -160,7 +160,7 @@ bool have_ffmpeg() {
 void encode_video(const fs::path& pattern, double frame_rate, const fs::path& file) {
   if (!(frame_rate > 0 && std::isfinite(frame_rate))) {
     throw InputError(
-        fmt::format("a video of {} frames a second cannot be made: expected a positive number", frame_rate));
+        fmt::format("a video of {} frames per second cannot be made: expected a positive number", frame_rate));
   }
   if (!have_ffmpeg()) {
     throw RunError(

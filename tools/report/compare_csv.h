@@ -1,4 +1,4 @@
-// compare.csv: one row a frame and velocity method.
+// compare.csv: one row per frame and velocity method.
 #pragma once
 
 #include <cstdint>

@@ -9,8 +9,8 @@
 
 namespace flowskin::tools {
 
-/// A header and a line a row. `for_each_column(row, visit)` calls visit(name, value) for each column, so that header
-/// and rows cannot disagree.
+/// A header and one line per row. `for_each_column(row, visit)` calls visit(name, value) for each column, so that
+/// header and rows cannot disagree.
 template <class Row, class ForEachColumn>
 std::string csv_text(const std::vector<Row>& rows, const ForEachColumn& for_each_column) {
   std::string text;

@@ -1,4 +1,4 @@
-// frames.csv: one row a frame.
+// frames.csv: one row per frame.
 #pragma once
 
 #include <cstdint>

@@ -5,8 +5,8 @@
 
 namespace flowskin::tools {
 
-/// Linear light, 0 to 1 a channel, of a colour in OKLCh [B. Ottosson, "A perceptual color space for image processing",
-/// 2020]: lightness 0 to 1, chroma about 0 to 0.3, hue in turns. Channels outside the gamut are clamped.
+/// Linear light, 0 to 1 per channel, of a colour in OKLCh [B. Ottosson, "A perceptual color space for image
+/// processing", 2020]: lightness 0 to 1, chroma about 0 to 0.3, hue in turns. Channels outside the gamut are clamped.
 Vec3 linear_from_oklch(double lightness, double chroma, double hue);
 
 /// sRGB code values of linear light; clamped to 0 to 255.

@@ -19,7 +19,7 @@ double blend_at(double distortion, double limit);
 std::vector<double> stretch_blend(const tracking::SurfaceMesh& mesh, const std::vector<Vec3>& places, double limit);
 
 /// Share of the surface's area where the texture of these places is distorted past the limit.
-/// @param weights one a vertex: what counts of each triangle is their mean at its corners; empty: all
+/// @param weights one per vertex: what counts of each triangle is their mean at its corners; empty: all
 double overstretched_share(const tracking::SurfaceMesh& mesh, const std::vector<Vec3>& places, double limit,
                            const std::vector<double>& weights = {});
 

@@ -22,12 +22,12 @@ RestFrame rest_frame(const std::vector<Vec3>& rest_positions);
 /// As a scene says it.
 inline RestFrame rest_frame_of(const scenes::TextureSpec& texture) { return {texture.rest_center, texture.rest_size}; }
 
-/// Texture coordinates a triangle corner. box: the axis that the triangle faces at rest; spherical: the seam is closed
-/// by continuing u past 1 on the triangles that cross it.
+/// Texture coordinates per triangle corner. box: the axis that the triangle faces at rest; spherical: the seam is
+/// closed by continuing u past 1 on the triangles that cross it.
 /// @param places of the vertices' material (m) that count as at rest
 std::vector<std::array<Vec2f, 3>> corner_uvs(const tracking::SurfaceMesh& mesh, const std::vector<Vec3>& places,
                                              const scenes::TextureSpec& texture, const RestFrame& rest);
-/// One pair of coordinates a vertex, for formats that have no more.
+/// One pair of coordinates per vertex, for formats that have no more.
 std::vector<Vec2f> vertex_uvs(const tracking::SurfaceMesh& mesh, const std::vector<Vec3>& places,
                               const scenes::TextureSpec& texture, const RestFrame& rest);
 /// The same from rest positions.

@@ -18,7 +18,7 @@ using FieldAt = std::function<MetaballField(double)>;
 /// One step from `time` to `time + step` by Euler's method, the midpoint rule or the classical Runge-Kutta method.
 /// @param field_now the field at `time`
 /// @param first_velocity where not empty, the method's velocity at the given positions and time, known already (m/s)
-/// @param positions the vertices (m), one a vertex of the mesh; moved.
+/// @param positions the vertices (m), one per vertex of the mesh; moved.
 void advect_step(const VelocityMethod& method, const MeshAdjacency& topology, Integrator integrator,
                  const MetaballField& field_now, const FieldAt& field_at, double time, double step,
                  const std::vector<Vec3>& first_velocity, std::vector<Vec3>& positions);

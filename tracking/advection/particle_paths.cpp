@@ -74,14 +74,14 @@ void check_particles(const Particles& particles) {
   const auto fits = [count](std::size_t size) { return size == count || size == 0; };
   if (particles.positions.size() != count || !fits(particles.velocities.size()) ||
       !fits(particles.rest_positions.size()) || !fits(particles.weights.size())) {
-    fail("ids, positions, velocities and rest positions must have one entry a particle, but have " +
+    fail("ids, positions, velocities and rest positions must have one entry per particle, but have " +
          std::to_string(count) + ", " + std::to_string(particles.positions.size()) + ", " +
          std::to_string(particles.velocities.size()) + ", " + std::to_string(particles.rest_positions.size()) +
          "; weights " + std::to_string(particles.weights.size()));
   }
   for (const std::vector<Vec3>& layer : particles.layers) {
     if (!fits(layer.size()))
-      fail("a layer must have one entry a particle, but has " + std::to_string(layer.size()) + " for " +
+      fail("a layer must have one entry per particle, but has " + std::to_string(layer.size()) + " for " +
            std::to_string(count));
     for (std::size_t i = 0; i < layer.size(); ++i)
       if (!layer[i].allFinite())

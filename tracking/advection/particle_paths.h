@@ -19,7 +19,7 @@ MetaballField field_of(const Particles& particles, const FieldSettings& settings
 /// with its velocities; one only in the later state comes in on a straight line, one only in the earlier goes on on
 /// one. A particle that jumps (JumpRule) counts as two: one that goes, and one that comes.
 ///
-/// Where ids do not last, or velocities are unknown, nobody knows paths. Then the field itself goes from one state's to
+/// Where ids do not last, or velocities are unknown, paths are unknown. Then the field itself goes from one state's to
 /// the other's, f = (1 - s) f_0 + s f_1 with s from 0 to 1; particles with velocities move in it, those of the earlier
 /// state forward, those of the later one backward in time from where they are. Time derivatives are those of this
 /// blend.

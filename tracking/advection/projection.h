@@ -41,8 +41,8 @@ double usual_slack(const FieldSettings& field);
 
 /// What became of all vertices.
 struct Projection {
-  std::vector<Vec3> normals;      ///< Outward, one a vertex.
-  std::vector<double> distances;  ///< |f| / |grad f| (m), one a vertex.
+  std::vector<Vec3> normals;      ///< Outward, one per vertex.
+  std::vector<double> distances;  ///< |f| / |grad f| (m), one per vertex.
   std::vector<int> failed;        ///< Vertices that are not on the surface, ascending.
   double max_distance = 0;        ///< The largest of the distances (m).
 };

@@ -60,7 +60,7 @@ class SparseGrid {
 
   double spacing_;
   double outside_;
-  std::vector<std::uint64_t> keys_;  // ascending; one a block
+  std::vector<std::uint64_t> keys_;  // ascending; one per block
   std::vector<Block> blocks_;
 };
 

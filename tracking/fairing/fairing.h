@@ -17,7 +17,7 @@ struct FairingSettings {
 /// An iteration moves every vertex at once (Jacobi): its one-ring neighbours are laid into its tangent plane and held
 /// fixed; it goes a share of the way to where the springs to them, of the given rest lengths, are in equilibrium, at
 /// most a quarter of its shortest edge; then it is put back on the surface by a step of Eq. 12.
-/// @param rest_lengths one an edge of the topology (m). Where the springs of a vertex are too long for their ring on
+/// @param rest_lengths one per edge of the topology (m). Where the springs of a vertex are too long for their ring on
 ///   the whole, they are shortened together, because compressed springs have no stable equilibrium.
 /// @param confidence how well the velocity of each vertex was determined; empty: constant springs, the paper's method.
 ///   Else the springs are soft where it was well determined: a vertex goes only the share 1 - confidence of its way, in
@@ -37,7 +37,7 @@ enum class Laying { projected, turned };
 /// The springs of a mesh.
 struct SpringMesh {
   const MeshAdjacency& topology;
-  const std::vector<double>& rest_lengths;  ///< One an edge (m).
+  const std::vector<double>& rest_lengths;  ///< One per edge (m).
   Laying laying = Laying::projected;
   double stiffness = 0.3;  ///< As in FairingSettings.
 };

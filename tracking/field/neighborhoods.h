@@ -41,7 +41,7 @@ class LocalField {
 
 /// Which particles matter to each of many points. Points are sorted along the Hilbert curve and cut into patches; a
 /// patch looks up the particles around it, and its points choose among those. What comes out depends on the points
-/// alone, not on threads. Costs about 200 bytes a point. The field must outlive it.
+/// alone, not on threads. Costs about 200 bytes per point. The field must outlive it.
 class Neighborhoods {
  public:
   /// @param slack how far from its point a place may be (m) to be evaluated without a lookup of its own. The larger,

@@ -21,7 +21,7 @@ namespace flowskin::tracking {
 /// @pre There is at least one particle, and their rest positions are known.
 Vec3 rest_position_at(const MetaballField& field, const Particles& particles, const Vec3& x);
 
-/// The same for other places of the particles' material (m), one a particle.
+/// The same for other places of the particles' material (m), one per particle.
 /// @pre There is at least one particle.
 Vec3 material_place_at(const MetaballField& field, const std::vector<Vec3>& particle_places, const Vec3& x);
 
@@ -50,10 +50,10 @@ struct MaterialSettings {
 
 /// Tells where the material of a place on the surface was at rest: the rest position of the closest point of an old
 /// surface that looks the same way, interpolated once over its triangle; where there is none, that of the particles
-/// beneath. The old surface is preferred even where the particles have come to disagree with it: two truths side by
-/// side would tear the texture. Where particles know no rest positions, new surface takes the displacement of the
-/// closest point of the old one within far_reach, whichever way it looks: wrong by at most twice their distance where
-/// the material moved rigidly. Farther away, and where there is no old surface, its own place.
+/// beneath. The old surface is preferred even where the particles have come to disagree with it: where both were used
+/// side by side, the texture would tear. Where particles know no rest positions, new surface takes the displacement of
+/// the closest point of the old one within far_reach, whichever way it looks: wrong by at most twice their distance
+/// where the material moved rigidly. Farther away, and where there is no old surface, its own place.
 class MaterialCarrier {
  public:
   /// Keeps references to all.

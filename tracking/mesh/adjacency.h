@@ -19,9 +19,9 @@ struct MeshAdjacency {
 
   std::vector<std::array<int, 2>> edges;           ///< (low, high) vertex, in lexicographic order.
   std::vector<std::array<int, 2>> edge_triangles;  ///< The first two triangles of an edge; -1 where there is none.
-  std::vector<int> neighbor_begin;                 ///< One entry a vertex, and one more.
+  std::vector<int> neighbor_begin;                 ///< One entry per vertex, and one more.
   std::vector<Neighbor> neighbors;                 ///< Ascending within a vertex.
-  std::vector<int> triangle_begin;                 ///< One entry a vertex, and one more.
+  std::vector<int> triangle_begin;                 ///< One entry per vertex, and one more.
   std::vector<int> triangles_of;                   ///< Triangles around a vertex, ascending.
 
   int vertex_count() const { return static_cast<int>(neighbor_begin.size()) - 1; }

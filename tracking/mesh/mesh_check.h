@@ -15,7 +15,7 @@ namespace flowskin::tracking {
 /// unless it is a cavity inside another part (outward).
 std::vector<std::string> mesh_problems(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
-/// The same, and that all vertex arrays have one entry a vertex, all of them finite, and ids are unique and below
+/// The same, and that all vertex arrays have one entry per vertex, all of them finite, and ids are unique and below
 /// next_id.
 std::vector<std::string> mesh_problems(const SurfaceMesh& mesh);
 

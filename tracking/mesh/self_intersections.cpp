@@ -20,7 +20,7 @@ std::vector<Vec3> checked(std::vector<Vec3> positions) {
   for (std::size_t v = 0; v < positions.size(); ++v) {
     for (double& value : positions[v]) {
       if (!(std::abs(value) <= kLargestCoordinate)) {
-        throw std::invalid_argument("vertex " + std::to_string(v) + " is at no place below 1e60 m");
+        throw std::invalid_argument("vertex " + std::to_string(v) + " is not finite, or farther out than 1e60 m");
       }
       if (std::abs(value) < kSmallestCoordinate) value = 0;
     }

@@ -15,8 +15,8 @@ struct Stretch {
 /// By how much the texture looks wrong: the largest singular value, or one over the smallest; at least 1.
 double distortion(const Stretch& stretch);
 
-/// From `places` of the vertices' material (m), one a vertex, to the present, one entry a triangle. A triangle without
-/// area at these places has the largest value infinity.
+/// From `places` of the vertices' material (m), one per vertex, to the present, one entry per triangle. A triangle
+/// without area at these places has the largest value infinity.
 std::vector<Stretch> texture_stretch(const SurfaceMesh& mesh, const std::vector<Vec3>& places);
 
 /// The same from rest positions.

@@ -36,10 +36,10 @@ std::vector<Box> boxes_of(const SparseGrid& grid, const SurfaceMesh& mesh);
 /// A mesh in which regions are being replaced.
 struct MeshToMend {
   std::vector<Vec3> positions;  ///< m
-  std::vector<Vec3> normals;    ///< Of the field, outward; one a vertex.
+  std::vector<Vec3> normals;    ///< Of the field, outward; one per vertex.
   std::vector<Triangle> triangles;
-  std::vector<Box> boxes;   ///< One a triangle.
-  std::vector<char> alive;  ///< One a triangle; 0: removed.
+  std::vector<Box> boxes;   ///< One per triangle.
+  std::vector<char> alive;  ///< One per triangle; 0: removed.
   TriangleBins bins;        ///< The triangles, removed ones too.
 };
 

@@ -14,7 +14,7 @@ void for_each_bin(const Box& box, const Visit& visit) {
     first[axis] = static_cast<std::int64_t>(std::floor(box.min[axis] / TriangleBins::kSide));
     last[axis] = static_cast<std::int64_t>(std::floor(box.max[axis] / TriangleBins::kSide));
   }
-  // 21 bits an axis: grids are smaller than that.
+  // 21 bits per axis: grids are smaller than that.
   constexpr int bits = 21;
   constexpr std::int64_t mask = (std::int64_t{1} << bits) - 1;
   for (std::int64_t i = first[0]; i <= last[0]; ++i) {

@@ -46,7 +46,7 @@ class CoupledSystem {
   using Vector = Eigen::Matrix<double, n, 1>;
   using Matrix = Eigen::Matrix<double, n, n>;
   using Gradient = typename Motion::Gradient;
-  using Field = std::vector<Vector>;  // one motion a vertex: velocity (radii/s) and gradient parameters (1/s)
+  using Field = std::vector<Vector>;  // one motion per vertex: velocity (radii/s) and gradient parameters (1/s)
 
   CoupledSystem(const MetaballField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
                 const CouplingWeights& weights)

@@ -14,7 +14,7 @@ namespace flowskin::tracking {
 class VelocityMethod {
  public:
   virtual ~VelocityMethod() = default;
-  /// `positions` are the vertices at the time of `field` (m); `velocities` gets one entry a vertex. Never NaN: where
+  /// `positions` are the vertices at the time of `field` (m); `velocities` gets one entry per vertex. Never NaN: where
   /// nothing is known, zero. An empty `topology` means vertices without neighbours.
   virtual void evaluate(const MetaballField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
                         std::vector<Vec3>& velocities) const = 0;

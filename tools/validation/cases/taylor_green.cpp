@@ -26,7 +26,7 @@ sph::SimulationSetup vortices(int across, double reynolds) {
   setup.settings.particle_shifting = 1;
   setup.settings.domain = {{0, 0, 0}, {kBox, kBox, thickness}};
   setup.settings.periodic = {true, true, true};
-  // One body a column of the lattice, as each has its own velocity.
+  // One body per column of the lattice, as each has its own velocity.
   for (int i = 0; i < across; ++i) {
     for (int j = 0; j < across; ++j) {
       const Vec3 corner(i * spacing, j * spacing, 0);
