@@ -12,7 +12,7 @@ namespace flowskin::tracking {
 using flowskin::Mat3;
 using flowskin::Vec3;
 
-class Wall;  // tracking/field/field_walls.h
+class Wall;  // tracking/field/metaballs/field_walls.h
 
 /// What the fluid lies on. A wall that moves knows by itself where it is at each time; all states of a source share it.
 using Walls = std::vector<std::shared_ptr<const Wall>>;

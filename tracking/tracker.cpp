@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/stopwatch.h"
+#include "tracking/advection/particle_motion.h"
 #include "tracking/advection/particle_paths.h"
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/extract_surface.h"
@@ -36,10 +37,13 @@ void require(bool condition, const std::string& name, double value, const std::s
   }
 }
 
-TrackerSettings filled_in(TrackerSettings settings) {
+void check_lengths(const TrackerSettings& settings) {
   require(std::isfinite(settings.spacing) && settings.spacing > 0, "spacing", settings.spacing, "positive (m)");
   require(std::isfinite(settings.edge_length) && settings.edge_length >= 0, "edge_length", settings.edge_length,
           "positive (m), or 0 for 0.75 spacings");
+}
+
+void check_rest(const TrackerSettings& settings) {
   require(settings.max_motion > 0, "max_motion", settings.max_motion, "positive (effective radii)");
   require(settings.fairing_iterations >= 0, "fairing_iterations", settings.fairing_iterations, "0 or more");
   require(std::isfinite(settings.curvature_edges) && settings.curvature_edges >= 0, "curvature_edges",
@@ -50,6 +54,20 @@ TrackerSettings filled_in(TrackerSettings settings) {
           "positive (m), or 0 for no limit");
   require(settings.fairing_stiffness >= 0 && settings.fairing_stiffness <= 1, "fairing_stiffness",
           settings.fairing_stiffness, "from 0 to 1");
+}
+
+// For a field that is not made of particles.
+TrackerSettings filled_in_for_field(TrackerSettings settings) {
+  if (settings.spacing == 0) settings.spacing = settings.edge_length / kDefaultEdgeInSpacings;
+  check_lengths(settings);
+  check_rest(settings);
+  if (settings.edge_length == 0) settings.edge_length = kDefaultEdgeInSpacings * settings.spacing;
+  return settings;
+}
+
+TrackerSettings filled_in(TrackerSettings settings) {
+  check_lengths(settings);
+  check_rest(settings);
   if (settings.field.radius == 0) settings.field = default_field_settings(settings.spacing);
   require(std::isfinite(settings.field.radius) && settings.field.radius > 0, "field.radius", settings.field.radius,
           "positive (m), or 0 for the default");
@@ -66,7 +84,9 @@ TrackerSettings filled_in(TrackerSettings settings) {
 class TrackerImpl {
  public:
   TrackerImpl(TrackerSettings settings, const Particles& particles)
-      : settings_(filled_in(std::move(settings))), method_(make_velocity_method(settings_.velocity)) {
+      : settings_(filled_in(std::move(settings))),
+        method_(make_velocity_method(settings_.velocity)),
+        scale_(settings_.field.scale()) {
     check(particles);
     particles_ = particles;
     rebuild_field();
@@ -74,22 +94,54 @@ class TrackerImpl {
     finish();
   }
 
+  TrackerImpl(TrackerSettings settings, std::shared_ptr<const ImplicitField> field, double time)
+      : settings_(filled_in_for_field(std::move(settings))),
+        method_(make_velocity_method(settings_.velocity)),
+        scale_(field->scale()),
+        follows_particles_(false) {
+    if (needs_particle_velocities(settings_.velocity)) {
+      throw std::invalid_argument("the velocity method \"" + settings_.velocity +
+                                  "\" needs particles, and this field is not made of any; choose a method that goes by "
+                                  "the field alone, such as affine");
+    }
+    particles_.time = time;
+    field_ = std::move(field);
+    adopt(extract_raw());
+    finish();
+  }
+
+  void advance(const FieldMotion& motion) {
+    if (follows_particles_) throw std::invalid_argument("the tracker follows particles; a field alone has none");
+    if (motion.begin_time() != particles_.time) {
+      throw std::invalid_argument("the field's motion begins at " + std::to_string(motion.begin_time()) +
+                                  " s, but the tracked surface is at " + std::to_string(particles_.time) + " s");
+    }
+    report_ = {};
+    if (mesh_.positions.empty()) {
+      field_ = motion.field(motion.end_time());
+      restart();
+    } else {
+      if (motion.end_time() != motion.begin_time()) field_ = motion.field(motion.begin_time());
+      advect(motion, {});
+      if (!near_) near_.emplace(*field_, mesh_.positions, usual_slack(scale_));
+      fit_to_field();
+    }
+    particles_.time = motion.end_time();
+    finish();
+  }
+
   void advance(const Particles& particles) {
+    if (!follows_particles_) throw std::invalid_argument("the tracker follows a field that is not made of particles");
     check(particles);
     report_ = {};
     field_of_particles_ = true;
     if (particles.positions.empty() || particles_.positions.empty() || mesh_.positions.empty()) {
-      restart(particles);
+      particles_ = particles;
+      rebuild_field();
+      restart();
     } else {
       advect(particles);
-      Projection projection = fair_and_project();
-      near_.reset();
-      follow_topology(projection);
-      report_.max_distance = projection.max_distance;
-      if (settings_.max_slip > 0 && !particles_.rest_positions.empty()) {
-        Stopwatch watch(report_.seconds_topology);
-        report_.held_back = limit_slip(settings_.max_slip, *field_, particles_, mesh_);
-      }
+      fit_to_field();
     }
     finish();
     // Where states are blended, so are the rates of the field at the end. From here on it is a function of the
@@ -147,8 +199,10 @@ class TrackerImpl {
   }
 
   void rebuild_field() {
+    if (!follows_particles_) return;
     field_.reset();
-    if (!particles_.positions.empty()) field_.emplace(field_of(particles_, settings_.field));
+    if (!particles_.positions.empty())
+      field_ = std::make_shared<const MetaballField>(field_of(particles_, settings_.field));
   }
 
   SurfaceGeometry extract_raw() const { return extract_raw_surface(*field_, settings_.edge_length); }
@@ -157,7 +211,7 @@ class TrackerImpl {
     MaterialSettings material;
     material.reach = settings_.edge_length;
     material.same_vertex = settings_.edge_length / 3;
-    material.far_reach = kFarReach * settings_.field.radius;
+    material.far_reach = kFarReach * scale_.length;
     return material;
   }
 
@@ -165,7 +219,7 @@ class TrackerImpl {
   Projection adopt(const SurfaceGeometry& raw) {
     const SurfaceGeometry geometry = improve_surface(*field_, settings_.edge_length, raw);
     std::vector<Vec3> positions = geometry.positions;
-    Projection projection = project_to_surface(*field_, default_projection(settings_.field), positions);
+    Projection projection = project_to_surface(*field_, default_projection(scale_), positions);
     mesh_ = carry_material(mesh_, geometry, projection.normals, *field_, particles_, material_settings());
     topology_ = build_adjacency(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
     rest_lengths_ = edge_lengths(topology_, mesh_.positions);
@@ -174,11 +228,9 @@ class TrackerImpl {
     return projection;
   }
 
-  // There was no surface before, or there are no particles now.
-  void restart(const Particles& particles) {
+  // There was no surface before, or there is no field now.
+  void restart() {
     Stopwatch watch(report_.seconds_topology);
-    particles_ = particles;
-    rebuild_field();
     const bool had_surface = !mesh_.positions.empty();
     SurfaceMesh empty;
     empty.next_id = mesh_.next_id;
@@ -189,44 +241,63 @@ class TrackerImpl {
     if (had_surface != has_surface) report_.reason = has_surface ? "a surface appeared" : "the surface vanished";
   }
 
-  // Carries the vertices to the time of the new particles, in substeps.
+  // Carries the vertices to the time of the new particles.
   void advect(const Particles& particles) {
     const ParticlePaths paths(particles_, particles, settings_.spacing);
     report_.blended = paths.blended();
     report_.mismatch = paths.mismatch();
     field_of_particles_ = !paths.blended();
-    const double limit = settings_.max_motion * settings_.field.radius;
-    report_.substeps =
-        static_cast<int>(std::clamp(std::ceil(paths.longest_path() / limit), 1.0, double{kMostSubsteps}));
-    const double duration = paths.end_time() - paths.begin_time();
-    const auto field_at = [&](double time) { return paths.field(time, settings_.field); };
+    const ParticleMotion motion(paths, settings_.field);
     // The velocities of the last call hold at the start, unless particles come or go.
     std::vector<Vec3> first;
     if (paths.blended()) {
-      if (duration != 0) field_.emplace(field_at(paths.begin_time()));  // the same, but for its rates
+      if (paths.end_time() != paths.begin_time())
+        field_ = motion.field(paths.begin_time());  // the same, but for its rates
     } else if (velocities_known_ && particles_.ids == particles.ids && !paths.jumps()) {
       first = mesh_.velocities;
     }
+    advect(motion, std::move(first));
+    particles_ = particles;
+    if (paths.end_time() != paths.begin_time()) return;
+    rebuild_field();
+    near_.emplace(*field_, mesh_.positions, usual_slack(scale_));
+  }
 
+  // Carries the vertices along with the field, in substeps.
+  // @param first velocities at the beginning, where they are known
+  void advect(const FieldMotion& motion, std::vector<Vec3> first) {
+    const double limit = settings_.max_motion * scale_.length;
+    report_.substeps =
+        static_cast<int>(std::clamp(std::ceil(motion.longest_path() / limit), 1.0, double{kMostSubsteps}));
+    const double duration = motion.end_time() - motion.begin_time();
+    const auto field_at = [&motion](double time) { return motion.field(time); };
     for (int substep = 0; substep < report_.substeps && duration != 0; ++substep) {
-      const double time = paths.begin_time() + duration * substep / report_.substeps;
+      const double time = motion.begin_time() + duration * substep / report_.substeps;
       const bool last = substep + 1 == report_.substeps;
-      const double next = last ? paths.end_time() : paths.begin_time() + duration * (substep + 1) / report_.substeps;
+      const double next = last ? motion.end_time() : motion.begin_time() + duration * (substep + 1) / report_.substeps;
       {
         Stopwatch watch(report_.seconds_velocity);
         advect_step(*method_, topology_, settings_.integrator, *field_, field_at, time, next - time, first,
                     mesh_.positions);
         first.clear();
-        field_.emplace(field_at(next));
+        field_ = motion.field(next);
       }
       Stopwatch watch(report_.seconds_projection);
-      near_.emplace(*field_, mesh_.positions, usual_slack(settings_.field));
-      project_to_surface(*near_, default_projection(settings_.field), mesh_.positions);
+      near_.emplace(*field_, mesh_.positions, usual_slack(scale_));
+      project_to_surface(*near_, default_projection(scale_), mesh_.positions);
     }
-    particles_ = particles;
-    if (duration != 0) return;
-    rebuild_field();
-    near_.emplace(*field_, mesh_.positions, usual_slack(settings_.field));
+  }
+
+  // Makes the mesh that has been carried to the present field a good one of its surface.
+  void fit_to_field() {
+    Projection projection = fair_and_project();
+    near_.reset();
+    follow_topology(projection);
+    report_.max_distance = projection.max_distance;
+    if (settings_.max_slip > 0 && !particles_.rest_positions.empty()) {
+      Stopwatch watch(report_.seconds_topology);
+      report_.held_back = limit_slip(settings_.max_slip, *field_->particles(), particles_, mesh_);
+    }
   }
 
   Projection fair_and_project() {
@@ -241,10 +312,10 @@ class TrackerImpl {
     Projection projection;
     {
       Stopwatch watch(report_.seconds_projection);
-      projection = project_to_surface(*field_, default_projection(settings_.field), mesh_.positions);
+      projection = project_to_surface(*field_, default_projection(scale_), mesh_.positions);
     }
     Stopwatch watch(report_.seconds_fairing);
-    repair(*field_, default_projection(settings_.field), topology_, mesh_.triangles, mesh_.positions, projection);
+    repair(*field_, default_projection(scale_), topology_, mesh_.triangles, mesh_.positions, projection);
     return projection;
   }
 
@@ -320,6 +391,8 @@ class TrackerImpl {
 
   TrackerSettings settings_;
   std::unique_ptr<VelocityMethod> method_;
+  FieldScale scale_;
+  bool follows_particles_ = true;  // else a field that is not made of any
   TrackerState state_;
   Particles& particles_ = state_.particles;
   SurfaceMesh& mesh_ = state_.mesh;
@@ -328,7 +401,7 @@ class TrackerImpl {
   bool& velocities_known_ = state_.velocities_known;
   TrackerReport& report_ = state_.report;
   // What follows from the state.
-  std::optional<MetaballField> field_;  // of the particles; none where there are none
+  std::shared_ptr<const ImplicitField> field_;  // at present; none where there are no particles
   MeshAdjacency topology_;
   std::optional<Neighborhoods> near_;  // during a step: of places near the vertices before fairing
   bool field_of_particles_ = true;     // false during a step: the field is a blend of two states
@@ -336,11 +409,14 @@ class TrackerImpl {
 
 Tracker::Tracker(TrackerSettings settings, const Particles& particles)
     : impl_(std::make_unique<TrackerImpl>(std::move(settings), particles)) {}
+Tracker::Tracker(TrackerSettings settings, std::shared_ptr<const ImplicitField> field, double time)
+    : impl_(std::make_unique<TrackerImpl>(std::move(settings), std::move(field), time)) {}
 Tracker::~Tracker() = default;
 Tracker::Tracker(Tracker&&) noexcept = default;
 Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 
 void Tracker::advance(const Particles& particles) { impl_->advance(particles); }
+void Tracker::advance(const FieldMotion& motion) { impl_->advance(motion); }
 void Tracker::begin_layer() { impl_->begin_layer(); }
 void Tracker::drop_layer(std::size_t layer) { impl_->drop_layer(layer); }
 std::vector<Confidence> Tracker::confidence() const { return impl_->confidence(); }

@@ -1,4 +1,4 @@
-// Carries a surface mesh along with the particles: advection, projection, fairing, remeshing, topology.
+// Carries a surface mesh along with particles, or with any field: advection, projection, fairing, remeshing, topology.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,8 @@
 #include <string>
 
 #include "tracking/advection/integrator.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/field_motion.h"
+#include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/mesh/vertex_attributes.h"
 #include "tracking/particles.h"
 #include "tracking/repair/small_parts.h"
@@ -16,8 +17,10 @@
 namespace flowskin::tracking {
 
 struct TrackerSettings {
-  double spacing = 0;   ///< Distance of neighbouring particles (m); must be given.
-  FieldSettings field;  ///< radius 0: default_field_settings(spacing)
+  /// Distance of neighbouring particles (m); must be given. Where a field is tracked that has none it counts for
+  /// nothing but edge_length, which then may be given instead.
+  double spacing = 0;
+  FieldSettings field;  ///< Of particles; radius 0: default_field_settings(spacing).
   std::string velocity = "hybrid";
   Integrator integrator = Integrator::rk2;
   double max_motion = 0.25;        ///< A substep moves no particle further than this share of the effective radius.
@@ -105,9 +108,17 @@ class Tracker {
   Tracker(Tracker&&) noexcept;
   Tracker& operator=(Tracker&&) noexcept;
 
+  /// The same for a field at a time (s) that is not made of particles: rest positions are the positions.
+  /// @throws std::invalid_argument also where the velocity method needs particles.
+  Tracker(TrackerSettings settings, std::shared_ptr<const ImplicitField> field, double time);
+
   /// Carries the mesh from the particles of the last call (or of the constructor) to these. Where their velocities are
   /// unknown or their ids do not last, docs/track.md says what is exact and what is not.
   void advance(const Particles& particles);
+  /// Carries the mesh along with a field, from where the last call ended. New surface takes its material from the old
+  /// surface alone, as where particles know no rest positions.
+  /// @throws std::invalid_argument where this tracker follows particles, or the motion begins at another time.
+  void advance(const FieldMotion& motion);
 
   /// Adds a layer to the mesh: the places where its vertices are now. Particles given from now on should bring theirs.
   void begin_layer();
@@ -124,7 +135,8 @@ class Tracker {
   /// What must be kept to go on later.
   const TrackerState& state() const;
   /// Makes this tracker the one whose state this was: with the same settings all that follows is the same, bit for bit.
-  /// The walls stay those of the particles that it was made with.
+  /// The walls stay those of the particles that it was made with; a field that is not made of particles is the one that
+  /// it was made with, which must be that at the time of the state.
   /// @throws std::invalid_argument where the state contradicts itself.
   void restore(TrackerState state);
 

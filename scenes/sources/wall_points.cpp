@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "sph/walls/boundary_sampling.h"
-#include "tracking/field/field_walls.h"
+#include "tracking/field/metaballs/field_walls.h"
 
 namespace flowskin::scenes {
 namespace {

@@ -42,7 +42,7 @@ struct Body {
         points.push_back(x);
       }
     }
-    for (const Vec3& point : points) neighbors += field.jet(point).neighbors;
+    for (const Vec3& point : points) neighbors += field.motion_jet(point).neighbors;
     neighbors /= static_cast<double>(points.size());
   }
 
@@ -143,7 +143,7 @@ void register_benchmarks(double radius) {
     report(state, of, of.points.size());
   });
   add("jet", [radius](benchmark::State& state) {
-    at_every_point(state, radius, [](const MetaballField& field, const Vec3& x) { return field.jet(x); });
+    at_every_point(state, radius, [](const MetaballField& field, const Vec3& x) { return field.motion_jet(x); });
   });
   for (const VelocityMethodInfo& method : velocity_methods()) {
     add("velocity/" + method.name, [radius, &method](benchmark::State& state) {

@@ -7,8 +7,8 @@
 
 #include "scenes/scene_file.h"
 #include "scenes/sources/make_source.h"
-#include "tracking/field/field_walls.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/metaballs/field_walls.h"
+#include "tracking/field/metaballs/metaball_field.h"
 
 namespace flowskin::scenes::wall_points_test {
 namespace {

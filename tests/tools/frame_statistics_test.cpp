@@ -6,6 +6,7 @@
 #include "tools/pipeline/surface_statistics.h"
 #include "tools/report/frames_csv.h"
 #include "tools/report/worst_frames.h"
+#include "tracking/field/metaballs/metaball_field.h"
 
 namespace flowskin::tools::frame_statistics_test {
 namespace {

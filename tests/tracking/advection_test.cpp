@@ -98,7 +98,7 @@ TEST(ParticlePaths, RefuseBadParticles) {
 // A velocity field that is known everywhere: rotation about an axis, with a pull along it.
 class AnalyticVelocity : public VelocityMethod {
  public:
-  void evaluate(const MetaballField&, const MeshAdjacency&, const std::vector<Vec3>& positions,
+  void evaluate(const ImplicitField&, const MeshAdjacency&, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
     velocities.clear();
     for (const Vec3& x : positions) velocities.push_back(Vec3(0.2, 0.3, 1).cross(x));
@@ -107,12 +107,14 @@ class AnalyticVelocity : public VelocityMethod {
 
 double error_of_rotation(Integrator integrator, int steps) {
   const std::vector<Vec3> start = {{1, 0, 0}, {0, 2, 1}, {-1, 1, 0.5}};
-  const FieldAt field_at = [](double) { return MetaballField({Vec3::Zero()}, {}, FieldSettings{1, 0.5, 1}); };
+  const FieldAt field_at = [](double) {
+    return shared_field(MetaballField({Vec3::Zero()}, {}, FieldSettings{1, 0.5, 1}));
+  };
   std::vector<Vec3> positions = start;
   const double step = 1.0 / steps;
   for (int i = 0; i < steps; ++i) {
-    const MetaballField field = field_at(i * step);
-    advect_step(AnalyticVelocity(), {}, integrator, field, field_at, i * step, step, {}, positions);
+    const std::shared_ptr<const ImplicitField> field = field_at(i * step);
+    advect_step(AnalyticVelocity(), {}, integrator, *field, field_at, i * step, step, {}, positions);
   }
   double error = 0;
   for (int v = 0; v < 3; ++v) {
@@ -133,9 +135,9 @@ TEST(Integrator, ConvergesWithItsOrder) {
 // The velocity of the particles' mean: changes with the time of the field, so it tests the times of the stages.
 class MeanVelocity : public VelocityMethod {
  public:
-  void evaluate(const MetaballField& field, const MeshAdjacency&, const std::vector<Vec3>& positions,
+  void evaluate(const ImplicitField& field, const MeshAdjacency&, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
-    velocities.assign(positions.size(), field.velocities().front());
+    velocities.assign(positions.size(), field.particles()->velocities().front());
   }
 };
 
@@ -143,21 +145,23 @@ TEST(Integrator, AsksForTheFieldAtTheRightTimes) {
   const Particles from = cubic_motion(0), to = cubic_motion(1);
   const ParticlePaths paths(from, to);
   const FieldSettings settings{1, 0.5, 1};
-  const FieldAt field_at = [&](double t) { return paths.field(t, settings); };
+  const FieldAt field_at = [&](double t) { return shared_field(paths.field(t, settings)); };
   const std::vector<Vec3> start = {{5, 5, 5}};
   std::vector<Vec3> positions = start;
   // Simpson's rule, which RK4 becomes here, is exact for the quadratic velocity; the midpoint rule is not.
-  advect_step(MeanVelocity(), {}, Integrator::rk4, field_at(0), field_at, 0, 1, {}, positions);
+  advect_step(MeanVelocity(), {}, Integrator::rk4, *field_at(0), field_at, 0, 1, {}, positions);
   EXPECT_LT((positions[0] - start[0] - (to.positions[0] - from.positions[0])).norm(), 1e-12);
   positions = start;
-  advect_step(MeanVelocity(), {}, Integrator::rk2, field_at(0), field_at, 0, 1, {}, positions);
+  advect_step(MeanVelocity(), {}, Integrator::rk2, *field_at(0), field_at, 0, 1, {}, positions);
   EXPECT_LT((positions[0] - start[0] - cubic_motion(0.5).velocities[0]).norm(), 1e-12);
 }
 
 TEST(Integrator, TakesAFirstVelocityThatIsKnown) {
   std::vector<Vec3> positions = {{1, 0, 0}};
-  const FieldAt field_at = [](double) { return MetaballField({Vec3::Zero()}, {}, FieldSettings{1, 0.5, 1}); };
-  advect_step(AnalyticVelocity(), {}, Integrator::euler, field_at(0), field_at, 0, 0.5, {{2, 0, 0}}, positions);
+  const FieldAt field_at = [](double) {
+    return shared_field(MetaballField({Vec3::Zero()}, {}, FieldSettings{1, 0.5, 1}));
+  };
+  advect_step(AnalyticVelocity(), {}, Integrator::euler, *field_at(0), field_at, 0, 0.5, {{2, 0, 0}}, positions);
   EXPECT_EQ(positions[0], Vec3(2, 0, 0));
 }
 
@@ -170,7 +174,7 @@ TEST(Projection, ReachesTheSphereOfOneParticle) {
     const Vec3 direction = random.vector().normalized();
     Vec3 x = Vec3(1, 2, 3) + (radius + 0.4 * random.symmetric()) * direction;
     SurfaceDistance point;
-    ASSERT_TRUE(project_point(field, default_projection(settings), x, point));
+    ASSERT_TRUE(project_point(field, default_projection(settings.scale()), x, point));
     EXPECT_NEAR((x - Vec3(1, 2, 3)).norm(), radius, 1e-6);
     EXPECT_LT(((x - Vec3(1, 2, 3)).normalized() - direction).norm(), 1e-6);
     EXPECT_LT((point.normal - direction).norm(), 1e-6);
@@ -184,7 +188,7 @@ TEST(Projection, StatesWhereItFailsAndLeavesThePointAlone) {
   // Outside the support; at the centre where the gradient is zero; so near the rim that the gradient is noise.
   std::vector<Vec3> positions = {{5, 0, 0}, {0, 0, 0}, {1.9999999, 0, 0}, {1.1, 0, 0}};
   const std::vector<Vec3> before = positions;
-  const Projection projection = project_to_surface(field, default_projection(settings), positions);
+  const Projection projection = project_to_surface(field, default_projection(settings.scale()), positions);
   EXPECT_EQ(projection.failed, (std::vector<int>{0, 1, 2}));
   EXPECT_TRUE(std::isinf(projection.max_distance));
   for (int v = 0; v < 3; ++v) EXPECT_EQ(positions[v], before[v]);
@@ -196,7 +200,7 @@ TEST(Projection, FromAnywhereNearAJitteredBody) {
   test::Random random(8);
   std::vector<Vec3> positions;
   for (int i = 0; i < 500; ++i) positions.push_back((5.5 + random.symmetric()) * random.vector().normalized());
-  const Projection projection = project_to_surface(field, default_projection(settings), positions);
+  const Projection projection = project_to_surface(field, default_projection(settings.scale()), positions);
   EXPECT_TRUE(projection.failed.empty());
   EXPECT_LE(projection.max_distance, 1e-6 * settings.radius);
   for (const Vec3& x : positions) EXPECT_NEAR(field.value(x), 0, 1e-5);

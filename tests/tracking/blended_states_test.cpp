@@ -66,7 +66,7 @@ TEST(BlendedStates, RatesOfTwoStatesConvergeToTheClosedFormWithSecondOrder) {
     const MetaballField field = paths.field(middle, settings);
     Vec3 error = Vec3::Zero(), size = Vec3::Zero();  // of the rates of value, gradient, Hessian
     for (const Vec3& x : points) {
-      const Jet jet = field.jet(x), wanted = exact.jet(x);
+      const MotionJet jet = field.motion_jet(x), wanted = exact.motion_jet(x);
       error += Vec3(std::abs(jet.value_rate - wanted.value_rate), (jet.gradient_rate - wanted.gradient_rate).norm(),
                     (jet.hessian_rate - wanted.hessian_rate).norm());
       size += Vec3(std::abs(wanted.value_rate), wanted.gradient_rate.norm(), wanted.hessian_rate.norm());
@@ -96,13 +96,14 @@ TEST(BlendedStates, TheBlendIsAFieldWhoseRatesAreItsOwn) {
     const Vec3 x(5.9, 0.3, -0.4);
     const double h = 1e-5;
     for (const double t : {0.05, 0.2}) {
-      const Jet jet = paths.field(t, settings).jet(x);
-      const Jet before = paths.field(t - h, settings).jet(x), after = paths.field(t + h, settings).jet(x);
-      EXPECT_NEAR(jet.value_rate, (after.value - before.value) / (2 * h), 1e-6);
+      const MotionJet jet = paths.field(t, settings).motion_jet(x);
+      const MotionJet before = paths.field(t - h, settings).motion_jet(x),
+                      after = paths.field(t + h, settings).motion_jet(x);
+      EXPECT_NEAR(jet.value_rate, (after.moving_value - before.moving_value) / (2 * h), 1e-6);
       EXPECT_LT((jet.gradient_rate - (after.gradient - before.gradient) / (2 * h)).norm(), 1e-6);
       EXPECT_LT((jet.hessian_rate - (after.hessian - before.hessian) / (2 * h)).norm(), 1e-5);
       Vec3 gradient;
-      EXPECT_NEAR(paths.field(t, settings).value(x, gradient), jet.value, 1e-12);
+      EXPECT_NEAR(paths.field(t, settings).value(x, gradient), jet.moving_value, 1e-12);
       EXPECT_LT((gradient - jet.gradient).norm(), 1e-12);
     }
     // At both ends it is the field of that state.
@@ -223,7 +224,7 @@ TEST(BlendedStates, WeightsOfAStateArePartOfTheField) {
   const MetaballField by_way = ParticlePaths(third, to).field(0.2, settings);
   for (const Vec3& x : {Vec3(6.3, 0.4, 0.1), Vec3(-3, 3, 1)}) {
     EXPECT_NEAR(by_way.value(x), direct.value(x), 1e-12);
-    EXPECT_LT((by_way.jet(x).gradient_rate - direct.jet(x).gradient_rate).norm(), 1e-11);
+    EXPECT_LT((by_way.motion_jet(x).gradient_rate - direct.motion_jet(x).gradient_rate).norm(), 1e-11);
   }
   TrackerSettings tracker_settings;
   tracker_settings.spacing = 1;

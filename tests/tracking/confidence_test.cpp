@@ -9,13 +9,14 @@
 
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/advection/projection.h"
+#include "tracking/field/metaballs/metaball_field.h"
 
 namespace flowskin::tracking::confidence_test {
 namespace {
 
 std::vector<Vec3> points_on(const MetaballField& field, const std::vector<Vec3>& starts) {
   std::vector<Vec3> points = starts;
-  const Projection projection = project_to_surface(field, default_projection(field.settings()), points);
+  const Projection projection = project_to_surface(field, default_projection(field.scale()), points);
   EXPECT_TRUE(projection.failed.empty());
   return points;
 }

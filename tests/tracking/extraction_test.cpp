@@ -15,6 +15,7 @@
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/cell_triangles.h"
 #include "tracking/extraction/marching_cubes_tables.h"
+#include "tracking/field/metaballs/metaball_grid.h"
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/self_intersections.h"
@@ -162,7 +163,7 @@ TEST(MarchingCubes, Torus) {
 TEST(SparseGrid, HasTheValuesOfTheField) {
   const FieldSettings settings{2.5, 5, 1.5};
   const MetaballField field(ball_of_particles(4.2, {-3, 100, 7}), {}, settings);
-  const SparseGrid grid = SparseGrid::of_particles(field.positions(), settings, 0.8);
+  const SparseGrid grid = grid_of_particles(field.positions(), settings, 0.8);
   int inside = 0;
   for (const SparseGrid::Block& block : grid.blocks()) {
     for (int node = 0; node < SparseGrid::kNodes; ++node) {
@@ -177,14 +178,14 @@ TEST(SparseGrid, HasTheValuesOfTheField) {
 
 TEST(SparseGrid, MemoryFollowsTheParticlesNotTheirBox) {
   std::vector<Vec3> corners = {{0, 0, 0}, {4000, 4000, 4000}, {-4000, 4000, 0}};
-  EXPECT_LE(SparseGrid::of_particles(corners, {2.5, 0.5, 1}, 0.8).blocks().size(), 3U * 27U);
+  EXPECT_LE(grid_of_particles(corners, {2.5, 0.5, 1}, 0.8).blocks().size(), 3U * 27U);
 }
 
 TEST(SparseGrid, RefusesWhatItCannotHold) {
-  EXPECT_THROW(SparseGrid::of_particles({{1e12, 0, 0}}, {1, 0.5, 1}, 0.1), std::invalid_argument);
-  EXPECT_THROW(SparseGrid::of_particles({{std::nan(""), 0, 0}}, {1, 0.5, 1}, 0.1), std::invalid_argument);
-  EXPECT_THROW(SparseGrid::of_particles({{0, 0, 0}}, {1, 0.5, 1}, 0), std::invalid_argument);
-  EXPECT_THROW(SparseGrid::of_particles({{0, 0, 0}}, {1, 0, 1}, 0.1), std::invalid_argument);
+  EXPECT_THROW(grid_of_particles({{1e12, 0, 0}}, {1, 0.5, 1}, 0.1), std::invalid_argument);
+  EXPECT_THROW(grid_of_particles({{std::nan(""), 0, 0}}, {1, 0.5, 1}, 0.1), std::invalid_argument);
+  EXPECT_THROW(grid_of_particles({{0, 0, 0}}, {1, 0.5, 1}, 0), std::invalid_argument);
+  EXPECT_THROW(grid_of_particles({{0, 0, 0}}, {1, 0, 1}, 0.1), std::invalid_argument);
   EXPECT_THROW(SparseGrid::of_values({2, 2, 2}, {1, 2}, -1, 1), std::invalid_argument);
 }
 

@@ -12,6 +12,7 @@
 #include "tracking/extraction/extract_surface.h"
 #include "tracking/fairing/relaxation.h"
 #include "tracking/fairing/repair.h"
+#include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/mesh/mesh_measures.h"
 
 namespace flowskin::tracking::fairing_test {
@@ -49,7 +50,7 @@ std::vector<Vec3> perturbed(const Body& body, double size) {
   test::Random random(21);
   std::vector<Vec3> positions = body.surface.positions;
   for (Vec3& x : positions) x += size * random.vector();
-  project_to_surface(body.field, default_projection(body.field.settings()), positions);
+  project_to_surface(body.field, default_projection(body.field.scale()), positions);
   return positions;
 }
 
@@ -74,7 +75,7 @@ TEST(Fairing, KeepsAMeshAtRest) {
 TEST(Fairing, VariableSpringsKeepAMeshAtRestExactly) {
   const Body body(5.3);
   std::vector<Vec3> positions = body.surface.positions;
-  project_to_surface(body.field, default_projection(body.field.settings()), positions);
+  project_to_surface(body.field, default_projection(body.field.scale()), positions);
   const std::vector<double> rest_lengths = edge_lengths(body.topology, positions);
   const std::vector<Vec3> start = positions;
   fair(body.field, body.topology, rest_lengths, {10, 0.3}, std::vector<Confidence>(positions.size()), positions);
@@ -167,7 +168,7 @@ TEST(Fairing, SameBytesAtAnyThreadCount) {
 TEST(Relaxation, NeverTurnsATriangle) {
   const Body body(4.2);
   std::vector<Vec3> positions = perturbed(body, 0.25);
-  const ProjectionSettings settings = default_projection(body.field.settings());
+  const ProjectionSettings settings = default_projection(body.field.scale());
   std::vector<Vec3> normals = project_to_surface(body.field, settings, positions).normals;
   const auto inverted = [&] {
     return std::count_if(body.surface.triangles.begin(), body.surface.triangles.end(),
@@ -186,7 +187,7 @@ TEST(Repair, UntanglesAFoldAndLeavesTheRest) {
   // Vertex 0 jumps over one of its neighbours.
   const int neighbor = body.topology.ring(0)[0].vertex;
   positions[0] += 1.6 * (positions[neighbor] - positions[0]);
-  const ProjectionSettings settings = default_projection(body.field.settings());
+  const ProjectionSettings settings = default_projection(body.field.scale());
   Projection projection = project_to_surface(body.field, settings, positions);
   ASSERT_FALSE(bad_triangles(positions, body.surface.triangles, body.topology, projection.normals).empty());
   repair(body.field, settings, body.topology, body.surface.triangles, positions, projection);

@@ -1,5 +1,5 @@
 // The metaball field against brute force, differences and theory.
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/metaballs/metaball_field.h"
 
 #include <gtest/gtest.h>
 
@@ -37,9 +37,9 @@ Body jittered_ball(double spacing = 0.1, double radius_in_spacings = 2.5) {
 }
 
 /// The jet of one kernel phi(s) = w (1 - s)^3, s = r^2 / sigma^2, by the chain rule in x, one particle after the other.
-Jet brute_force_jet(const Body& body, const Vec3& x) {
-  Jet jet;
-  jet.value = -body.settings.threshold;
+MotionJet brute_force_jet(const Body& body, const Vec3& x) {
+  MotionJet jet;
+  jet.moving_value = -body.settings.threshold;
   const double sigma2 = body.settings.radius * body.settings.radius;
   const double w = body.settings.weight;
   for (std::size_t i = 0; i < body.positions.size(); ++i) {
@@ -58,7 +58,7 @@ Jet brute_force_jet(const Body& body, const Vec3& x) {
       third[k] =
           p3 * ds[k] * ds * ds.transpose() + p2 * ds[k] * dds + p2 * dds.col(k) * ds.transpose() + p2 * ds * dds.row(k);
     }
-    jet.value += w * std::pow(1 - s, 3);
+    jet.moving_value += w * std::pow(1 - s, 3);
     jet.gradient += p1 * ds;
     jet.hessian += hessian;
     for (int k = 0; k < 3; ++k) jet.third[k] += third[k];
@@ -75,8 +75,8 @@ void expect_close(const Mat3& a, const Mat3& b, double tolerance, const char* wh
   EXPECT_LE((a - b).cwiseAbs().maxCoeff(), tolerance * (1e-300 + std::max(a.norm(), b.norm()))) << what;
 }
 
-void expect_same_jet(const Jet& a, const Jet& b, double tolerance) {
-  EXPECT_NEAR(a.value, b.value, tolerance * (1 + std::abs(b.value)));
+void expect_same_jet(const MotionJet& a, const MotionJet& b, double tolerance) {
+  EXPECT_NEAR(a.moving_value, b.moving_value, tolerance * (1 + std::abs(b.moving_value)));
   EXPECT_LE((a.gradient - b.gradient).norm(), tolerance * (1 + b.gradient.norm()));
   expect_close(a.hessian, b.hessian, tolerance, "hessian");
   for (int k = 0; k < 3; ++k) expect_close(a.third[k], b.third[k], tolerance, "third");
@@ -94,7 +94,7 @@ TEST(Field, JetEqualsBruteForceSum) {
     for (int i = 0; i < 200; ++i) {
       const Vec3 x = 0.6 * random.vector();
       SCOPED_TRACE(radius);
-      expect_same_jet(field.jet(x), brute_force_jet(body, x), 1e-12);
+      expect_same_jet(field.motion_jet(x), brute_force_jet(body, x), 1e-12);
     }
   }
 }
@@ -105,10 +105,10 @@ TEST(Field, ValueAndGradientEqualTheJets) {
   Random random(14);
   for (int i = 0; i < 200; ++i) {
     const Vec3 x = 0.6 * random.vector();
-    const Jet jet = field.jet(x);
+    const MotionJet jet = field.motion_jet(x);
     Vec3 gradient;
-    EXPECT_NEAR(field.value(x, gradient), jet.value, 1e-12);
-    EXPECT_NEAR(field.value(x), jet.value, 1e-12);
+    EXPECT_NEAR(field.value(x, gradient), jet.moving_value, 1e-12);
+    EXPECT_NEAR(field.value(x), jet.moving_value, 1e-12);
     EXPECT_LE((gradient - jet.gradient).norm(), 1e-12 * (1 + jet.gradient.norm()));
   }
 }
@@ -139,14 +139,15 @@ TEST(Field, SpaceDerivativesEqualDifferences) {
   int points = 0;
   while (points < 100) {
     const Vec3 x = 0.5 * random.vector();
-    const Jet jet = field.jet(x);
+    const MotionJet jet = field.motion_jet(x);
     if (jet.neighbors == 0 || rim_is_near(body, x, 3 * step)) continue;
     ++points;
     for (int k = 0; k < 3; ++k) {
       const Vec3 axis = Vec3::Unit(k);
-      const double dv = difference([&](const Vec3& y) { return Vec1(field.jet(y).value); }, x, axis, step)[0];
-      const Vec3 dg = difference([&](const Vec3& y) { return field.jet(y).gradient; }, x, axis, step);
-      const Mat3 dh = difference([&](const Vec3& y) { return field.jet(y).hessian; }, x, axis, step);
+      const double dv =
+          difference([&](const Vec3& y) { return Vec1(field.motion_jet(y).moving_value); }, x, axis, step)[0];
+      const Vec3 dg = difference([&](const Vec3& y) { return field.motion_jet(y).gradient; }, x, axis, step);
+      const Mat3 dh = difference([&](const Vec3& y) { return field.motion_jet(y).hessian; }, x, axis, step);
       EXPECT_NEAR(dv, jet.gradient[k], 1e-6 * jet.gradient.norm());
       EXPECT_LE((dg - jet.hessian.col(k)).norm(), 1e-6 * jet.hessian.norm());
       EXPECT_LE((dh - jet.third[k]).norm(), 1e-6 * jet.third[k].norm());
@@ -168,17 +169,17 @@ TEST(Field, TimeDerivativesEqualDifferences) {
   int points = 0;
   while (points < 100) {
     const Vec3 x = 0.5 * random.vector();
-    const Jet jet = field.jet(x);
+    const MotionJet jet = field.motion_jet(x);
     if (jet.neighbors == 0 || rim_is_near(body, x, 4 * step)) continue;
     ++points;
-    std::array<Jet, 4> jets;
-    for (int i = 0; i < 4; ++i) jets[i] = moved[i].jet(x);
+    std::array<MotionJet, 4> jets;
+    for (int i = 0; i < 4; ++i) jets[i] = moved[i].motion_jet(x);
     const auto rate = [&](const auto& part) {
       return ((8 * (part(jets[2]) - part(jets[1])) - (part(jets[3]) - part(jets[0]))) / (12 * step)).eval();
     };
-    const double dv = rate([](const Jet& j) { return Vec1(j.value); })[0];
-    const Vec3 dg = rate([](const Jet& j) { return j.gradient; });
-    const Mat3 dh = rate([](const Jet& j) { return j.hessian; });
+    const double dv = rate([](const MotionJet& j) { return Vec1(j.moving_value); })[0];
+    const Vec3 dg = rate([](const MotionJet& j) { return j.gradient; });
+    const Mat3 dh = rate([](const MotionJet& j) { return j.hessian; });
     EXPECT_NEAR(dv, jet.value_rate, 1e-6 * (std::abs(jet.value_rate) + jet.gradient.norm()));
     EXPECT_LE((dg - jet.gradient_rate).norm(), 1e-6 * jet.gradient_rate.norm());
     EXPECT_LE((dh - jet.hessian_rate).norm(), 1e-6 * jet.hessian_rate.norm());
@@ -214,9 +215,9 @@ TEST(Field, FarStraysDoNotHideNeighbors) {
   Random random(18);
   for (int i = 0; i < 50; ++i) {
     const Vec3 x = 0.5 * random.vector();
-    expect_same_jet(field.jet(x), brute_force_jet(body, x), 1e-12);
+    expect_same_jet(field.motion_jet(x), brute_force_jet(body, x), 1e-12);
   }
-  EXPECT_EQ(field.jet(Vec3(3e7, -1e7, 2e7)).neighbors, 1);
+  EXPECT_EQ(field.motion_jet(Vec3(3e7, -1e7, 2e7)).neighbors, 1);
 }
 
 TEST(Field, DoesNotDependOnTheOrderOfQueries) {
@@ -225,13 +226,13 @@ TEST(Field, DoesNotDependOnTheOrderOfQueries) {
   std::vector<Vec3> points;
   Random random(19);
   for (int i = 0; i < 300; ++i) points.emplace_back(0.5 * random.vector());
-  std::vector<Jet> forward(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) forward[i] = field.jet(points[i]);
+  std::vector<MotionJet> forward(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) forward[i] = field.motion_jet(points[i]);
   const auto count = static_cast<std::ptrdiff_t>(points.size());
 #pragma omp parallel for schedule(dynamic, 1) num_threads(3)
   for (std::ptrdiff_t i = count - 1; i >= 0; --i) {
-    const Jet jet = field.jet(points[i]);
-    EXPECT_EQ(jet.value, forward[i].value);
+    const MotionJet jet = field.motion_jet(points[i]);
+    EXPECT_EQ(jet.moving_value, forward[i].moving_value);
     EXPECT_EQ(jet.hessian_rate, forward[i].hessian_rate);
     EXPECT_EQ(jet.third[1], forward[i].third[1]);
   }
@@ -240,7 +241,7 @@ TEST(Field, DoesNotDependOnTheOrderOfQueries) {
 TEST(Field, WithoutVelocitiesNothingMoves) {
   Body body = jittered_ball();
   body.velocities.clear();
-  const Jet jet = body.field().jet(Vec3(0.1, 0.4, 0));
+  const MotionJet jet = body.field().motion_jet(Vec3(0.1, 0.4, 0));
   EXPECT_GT(jet.gradient.norm(), 0);
   EXPECT_EQ(jet.value_rate, 0);
   EXPECT_EQ(jet.gradient_rate, Vec3::Zero());
@@ -251,11 +252,11 @@ TEST(Field, DegenerateBodiesAreDefined) {
   const FieldSettings settings{1.0, 0.3, 1.0};
   const MetaballField empty({}, {}, settings);
   EXPECT_EQ(empty.value(Vec3::Zero()), -0.3);
-  EXPECT_EQ(empty.jet(Vec3::Zero()).neighbors, 0);
+  EXPECT_EQ(empty.motion_jet(Vec3::Zero()).neighbors, 0);
 
   const MetaballField coincident(std::vector<Vec3>(100, Vec3(1, 2, 3)), {}, settings);
   EXPECT_NEAR(coincident.value(Vec3(1, 2, 3)), 100 - 0.3, 1e-12);
-  EXPECT_EQ(coincident.jet(Vec3(1.1, 2, 3)).neighbors, 100);
+  EXPECT_EQ(coincident.motion_jet(Vec3(1.1, 2, 3)).neighbors, 100);
 
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(coincident.value(Vec3(nan, 0, 0)), -0.3);

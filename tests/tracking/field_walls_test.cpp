@@ -1,5 +1,5 @@
 // Walls in a metaball field: sums by another route, what a bare wall may do, and films that have a surface by them.
-#include "tracking/field/field_walls.h"
+#include "tracking/field/metaballs/field_walls.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "tracking/advection/particle_paths.h"
 #include "tracking/extraction/extract_surface.h"
 #include "tracking/extraction/sparse_grid.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/field/neighborhoods.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/tracker.h"
@@ -75,7 +75,7 @@ TEST(FieldWalls, AddWhatParticlesOfTheirShareWould) {
     Vec3 gradient;
     EXPECT_NEAR(field.value(x, gradient), other.value(x), 1e-12);
     EXPECT_NEAR(field.value(x), other.value(x), 1e-12);
-    EXPECT_LE((gradient - other.jet(x).gradient).norm(), 1e-12);
+    EXPECT_LE((gradient - other.motion_jet(x).gradient).norm(), 1e-12);
   }
 }
 
@@ -94,8 +94,8 @@ TEST(FieldWalls, AreNoParticles) {
     EXPECT_EQ(found, expected);
     // The fluid moves, and is strained; the wall is not.
     EXPECT_EQ(field.moments(x).u2_ee, alone.moments(x).u2_ee);
-    EXPECT_EQ(field.jet(x).gradient, alone.jet(x).gradient);
-    EXPECT_EQ(field.jet(x).hessian, alone.jet(x).hessian);
+    EXPECT_EQ(field.motion_jet(x).gradient, alone.motion_jet(x).gradient);
+    EXPECT_EQ(field.motion_jet(x).hessian, alone.motion_jet(x).hessian);
   }
 }
 
@@ -122,7 +122,7 @@ TEST(FieldWalls, NeighborhoodsAndGridSeeTheSame) {
     field.value(points[i], expected);
     EXPECT_EQ(gradient, expected);
   }
-  const SparseGrid grid = SparseGrid::of_field(field, 0.75);
+  const SparseGrid grid = field.on_grid(0.75);
   int nodes = 0;
   for (const SparseGrid::Block& block : grid.blocks()) {
     for (int n = 0; n < SparseGrid::kSide; ++n) {

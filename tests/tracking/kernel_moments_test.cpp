@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/tracking/field_test_bodies.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/metaballs/metaball_field.h"
 
 namespace flowskin::tracking::kernel_moments_test {
 namespace {
@@ -30,7 +30,7 @@ TEST(KernelMoments, GiveTheRatesOfEveryAffineMotion) {
         response.hessian += gradient(row, column) * one.hessian;
       }
     }
-    const Jet jet = field.jet(x);
+    const MotionJet jet = field.motion_jet(x);
     const double w = settings.weight, r = settings.radius;
     EXPECT_NEAR(jet.value_rate + jet.gradient.dot(v), w * response.value, 1e-11 * w);
     EXPECT_LT((jet.gradient_rate + jet.hessian * v - w / r * response.gradient).norm(), 1e-10 * w / r);

@@ -112,7 +112,7 @@ const MaterialSettings kMaterial{kEdge, kEdge / 3};
 
 std::vector<Vec3> normals_of(const MetaballField& field, const SurfaceGeometry& surface) {
   std::vector<Vec3> positions = surface.positions;
-  return project_to_surface(field, default_projection(kField), positions).normals;
+  return project_to_surface(field, default_projection(kField.scale()), positions).normals;
 }
 
 TEST(Material, SurvivesAReextraction) {

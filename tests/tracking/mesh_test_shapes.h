@@ -11,7 +11,7 @@
 
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/extraction/marching_cubes.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/particles.h"
 
 namespace flowskin::tracking::test {

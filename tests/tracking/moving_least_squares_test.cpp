@@ -1,5 +1,6 @@
 // The particles' flow around a point: exact for linear flows, defined for every arrangement of particles.
 #include "tracking/velocity/moving_least_squares.h"
+#include "tracking/field/metaballs/metaball_field.h"
 
 #include <gtest/gtest.h>
 

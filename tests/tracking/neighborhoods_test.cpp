@@ -13,6 +13,7 @@
 #include "common/hilbert.h"
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/advection/projection.h"
+#include "tracking/field/metaballs/metaball_field.h"
 
 namespace flowskin::tracking::neighborhoods_test {
 namespace {
@@ -58,17 +59,17 @@ void expect_same(const MetaballField& field, const LocalField& local, const Vec3
   Vec3 gradient, local_gradient;
   EXPECT_EQ(local.value(x, local_gradient), field.value(x, gradient));
   EXPECT_EQ(local_gradient, gradient);
-  const Jet jet = field.jet(x), local_jet = local.jet(x);
-  EXPECT_EQ(local_jet.value, jet.value);
+  const MotionJet jet = field.motion_jet(x), local_jet = local.motion_jet(x);
+  EXPECT_EQ(local_jet.moving_value, jet.moving_value);
   EXPECT_EQ(local_jet.hessian, jet.hessian);
   EXPECT_EQ(local_jet.third[2], jet.third[2]);
   EXPECT_EQ(local_jet.hessian_rate, jet.hessian_rate);
   EXPECT_EQ(local_jet.value_rate, jet.value_rate);
   EXPECT_EQ(local_jet.neighbors, jet.neighbors);
-  EXPECT_EQ(local.moments(x).u_eee, field.moments(x).u_eee);
+  EXPECT_EQ(local.particles()->moments(x).u_eee, field.moments(x).u_eee);
   std::vector<int> found, local_found;
   field.neighbors(x, field.settings().radius, found);
-  local.neighbors(x, local_found);
+  local.particles()->neighbors(x, local_found);
   EXPECT_EQ(local_found, found);
 }
 
@@ -80,7 +81,7 @@ TEST(Neighborhoods, GiveTheFieldBitForBitNearAndFar) {
       const Neighborhoods neighborhoods(*field, points, slack);
       Random random(55);
       for (int i = 0; i < static_cast<int>(points.size()); i += 7) {
-        const LocalField local = neighborhoods.at(i);
+        const LocalField& local = neighborhoods.at(i);
         expect_same(*field, local, points[i]);
         // Within the slack, on its rim, and far beyond it.
         expect_same(*field, local, points[i] + slack * random.vector().normalized());
@@ -157,7 +158,7 @@ TEST(Neighborhoods, HilbertOrderIsTheSortedOneWithTiesAscending) {
 
 TEST(Neighborhoods, ProjectingTheMovedIsProjectingAll) {
   const MetaballField field = whole();
-  const ProjectionSettings settings = default_projection(field.settings());
+  const ProjectionSettings settings = default_projection(field.scale());
   std::vector<Vec3> some = noise(400, 56);
   for (Vec3& x : some) x = 5.8 * x.normalized();
   some[5] = Vec3(30, 0, 0);  // never gets there

@@ -7,6 +7,7 @@
 
 #include "tests/tracking/mesh_test_shapes.h"
 #include "tracking/extraction/extract_surface.h"
+#include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
 

@@ -12,6 +12,7 @@
 #include "tests/tracking/mesh_test_shapes.h"
 #include "tracking/extraction/extract_surface.h"
 #include "tracking/fairing/bad_triangles.h"
+#include "tracking/field/metaballs/metaball_grid.h"
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/repair/disagreement.h"
@@ -30,7 +31,7 @@ constexpr double kEdge = 0.75;
 const FieldSettings kField = default_field_settings(1);
 
 SparseGrid grid_of(const MetaballField& field) {
-  return SparseGrid::of_particles(field.positions(), field.settings(), kEdge, {});
+  return grid_of_particles(field.positions(), field.settings(), kEdge, {});
 }
 
 // ---------------------------------------------------------------- crossings
@@ -142,7 +143,7 @@ TEST(Disagreement, DisplacementIsSeenWhereTheValuesOfTheGridHideIt) {
   int displaced = 0, unseen = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const MetaballField field(thin_film(seed), {}, kField);
-    const SparseGrid grid = SparseGrid::of_particles(field.positions(), field.settings(), kCell, {});
+    const SparseGrid grid = grid_of_particles(field.positions(), field.settings(), kCell, {});
     const SurfaceGeometry mesh = march(grid);
     const auto crossings = grid_crossings(grid, mesh.positions, mesh.triangles);
     const CellSet seen(displaced_cells(field, grid, kApart, crossings));
@@ -255,7 +256,7 @@ struct Surface {
 
 Surface fresh_surface(const MetaballField& field, const Particles& particles) {
   SurfaceGeometry geometry = extract_surface(field, kEdge);
-  const Projection projection = project_to_surface(field, default_projection(kField), geometry.positions);
+  const Projection projection = project_to_surface(field, default_projection(kField.scale()), geometry.positions);
   return {carry_material({}, geometry, projection.normals, field, particles, {}), projection};
 }
 
@@ -282,7 +283,7 @@ Change changed(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   const MetaballField old_field(from, {}, kField), field(to, {}, kField);
   change.before = fresh_surface(old_field, old_particles);
   change.after = change.before.mesh;
-  Projection projection = project_to_surface(field, default_projection(kField), change.after.positions);
+  Projection projection = project_to_surface(field, default_projection(kField.scale()), change.after.positions);
   change.before.mesh.positions = change.after.positions;
   change.report = change_topology(field, particles, settings(), change.after, projection);
 
@@ -380,7 +381,7 @@ void expect_mended(const std::function<void(SurfaceMesh&)>& spoil, double least_
   SurfaceMesh mesh = fresh_surface(field, particles).mesh;
   const std::vector<std::uint64_t> old_ids = mesh.ids;
   spoil(mesh);
-  Projection projection = project_to_surface(field, default_projection(kField), mesh.positions);
+  Projection projection = project_to_surface(field, default_projection(kField.scale()), mesh.positions);
   const TopologyReport report = change_topology(field, particles, settings(), mesh, projection);
   EXPECT_GT(report.regions, 0);
   EXPECT_EQ(report.stubborn, 0) << report.why;
@@ -428,7 +429,7 @@ TEST(BadTriangles, AreSeen) {
   const SurfaceMesh sound = fresh_surface(field, particles_at(ball_of_particles(4.2))).mesh;
   const auto count_bad = [&](const SurfaceMesh& mesh) {
     std::vector<Vec3> positions = mesh.positions;
-    const Projection projection = project_to_surface(field, default_projection(kField), positions);
+    const Projection projection = project_to_surface(field, default_projection(kField.scale()), positions);
     return bad_triangles(mesh.positions, mesh.triangles,
                          build_adjacency(static_cast<int>(positions.size()), mesh.triangles), projection.normals)
         .size();

@@ -9,6 +9,7 @@
 
 #include "tests/tracking/mesh_test_shapes.h"
 #include "tracking/extraction/extract_surface.h"
+#include "tracking/field/metaballs/metaball_grid.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/repair/change_topology.h"
 
@@ -20,9 +21,7 @@ using test::ball_of_particles;
 constexpr double kEdge = 1;
 const FieldSettings kField = default_field_settings(1);
 
-SparseGrid grid_of(const MetaballField& field) {
-  return SparseGrid::of_particles(field.positions(), field.settings(), kEdge);
-}
+SparseGrid grid_of(const MetaballField& field) { return grid_of_particles(field.positions(), field.settings(), kEdge); }
 
 ScalarFunction value_of(const MetaballField& field) {
   return [&field](const Vec3& x) { return field.value(x); };

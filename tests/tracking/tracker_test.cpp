@@ -248,7 +248,7 @@ TEST(Tracker, RefusesImpossibleSettings) {
   refused([](TrackerSettings& s) { s.fairing_stiffness = 1.5; });
   refused([](TrackerSettings& s) { s.field = {-1, 0.5, 1}; });
   refused([](TrackerSettings& s) { s.field = {1, 0, 1}; });
-  refused([](TrackerSettings& s) { s.velocity = "no such method"; });
+  refused([](TrackerSettings& s) { s.field.wall_share = 0.6; });
 }
 
 TEST(Tracker, RefusesBadParticlesAndStaysAsItWas) {

@@ -13,6 +13,7 @@
 
 #include "tests/tracking/field_test_bodies.h"
 #include "tracking/extraction/extract_surface.h"
+#include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/velocity_method.h"
 
@@ -191,7 +192,7 @@ TEST(Velocity, TheSurfaceIsMetExactly) {
     const std::vector<Vec3> found =
         evaluate(method, body.particles, velocities, body.settings, body.surface, body.topology);
     for (std::size_t i = 0; i < found.size(); ++i) {
-      const Jet jet = field.jet(body.surface[i]);
+      const MotionJet jet = field.motion_jet(body.surface[i]);
       const double terms = std::abs(jet.value_rate) + jet.gradient.norm() * found[i].norm();
       EXPECT_NEAR(jet.value_rate + jet.gradient.dot(found[i]), 0, 1e-10 * terms) << method;
     }
@@ -259,7 +260,7 @@ TEST(Velocity, TotalKeepsTheNormal) {
   const std::vector<Vec3> points = surface_points(field, Vec3::Zero(), 2, 200, 35);
   const std::vector<Vec3> found = evaluate("total", particles, velocities, settings, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Jet jet = field.jet(points[i]);
+    const MotionJet jet = field.motion_jet(points[i]);
     const Vec3 n = jet.gradient.normalized();
     const Vec3 change = jet.gradient_rate + jet.hessian * found[i];
     const Vec3 turning = (change - n * n.dot(change)) / jet.gradient.norm();

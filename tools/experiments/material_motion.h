@@ -4,7 +4,7 @@
 #include "scenes/scene.h"
 #include "scenes/sources/motion.h"
 #include "tools/frame_data.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/metaballs/metaball_field.h"
 
 namespace flowskin::tools {
 

@@ -103,7 +103,7 @@ class Rider {
     method_->evaluate(field_now, topology_, positions_, velocities);
     moving_.add_velocities(positions_, velocities, now);
     unspinning_.add_velocities(positions_, velocities, now);
-    const auto field_at = [&](double time) { return motion_.field(time); };
+    const auto field_at = [&](double time) { return tracking::shared_field(motion_.field(time)); };
     tracking::advect_step(*method_, topology_, settings_.integrator, field_now, field_at, now, next - now, velocities,
                           positions_);
     fit_to(motion_.field(next));
@@ -113,7 +113,7 @@ class Rider {
 
   // Onto the surface [FMM13, Eq. 12], with fairing [FMM13, 3.4].
   void fit_to(const tracking::MetaballField& field) {
-    const tracking::ProjectionSettings projection = tracking::default_projection(field.settings());
+    const tracking::ProjectionSettings projection = tracking::default_projection(field.scale());
     failed_ = int(tracking::project_to_surface(field, projection, positions_).failed.size());
     if (settings_.fairing_iterations == 0) return;
     std::vector<tracking::Confidence> confidence;
@@ -165,7 +165,7 @@ RideSettings ride_settings(const scenes::Scene& scene) {
 tracking::SurfaceMesh start_mesh(const scenes::Scene& scene) {
   const tracking::MetaballField field = MaterialMotion(scene).field(0);
   tracking::SurfaceGeometry geometry = tracking::extract_surface(field, scenes::settings_in_metres(scene).edge_length);
-  tracking::project_to_surface(field, tracking::default_projection(field.settings()), geometry.positions);
+  tracking::project_to_surface(field, tracking::default_projection(field.scale()), geometry.positions);
   tracking::SurfaceMesh mesh;
   mesh.positions = mesh.rest_positions = std::move(geometry.positions);
   mesh.triangles = std::move(geometry.triangles);

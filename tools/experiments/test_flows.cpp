@@ -11,6 +11,7 @@
 #include "tracking/advection/integrator.h"
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/extract_surface.h"
+#include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/velocity_method.h"
 
@@ -158,11 +159,13 @@ double path_error(const std::string& method, const FlowBody& body, double radius
   const auto topology = tracking::build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles);
   std::vector<Vec3> positions = surface.positions;
   const auto at = [&](double time) { return field_at(body, settings, flow, time); };
+  const auto shared_at = [&](double time) { return tracking::shared_field(at(time)); };
   for (int step = 0; step < kSteps; ++step) {
     const double time = static_cast<double>(step) / kSteps, next = static_cast<double>(step + 1) / kSteps;
-    tracking::advect_step(*velocity, topology, tracking::Integrator::rk2, field, at, time, next - time, {}, positions);
+    tracking::advect_step(*velocity, topology, tracking::Integrator::rk2, field, shared_at, time, next - time, {},
+                          positions);
     field = at(next);
-    tracking::project_to_surface(field, tracking::default_projection(settings), positions);
+    tracking::project_to_surface(field, tracking::default_projection(settings.scale()), positions);
   }
   double sum = 0;
   for (std::size_t v = 0; v < positions.size(); ++v) {

@@ -10,6 +10,7 @@
 #include "tools/report/stage_clock.h"
 #include "tracking/advection/projection.h"
 #include "tracking/fairing/fairing.h"
+#include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/velocity_method.h"
 
@@ -54,7 +55,7 @@ StepTime time_steps(const scenes::Scene& scene, const tracking::SurfaceMesh& sta
   const auto method = tracking::make_velocity_method(name);
   const auto topology = tracking::build_adjacency(int(start.positions.size()), start.triangles);
   const auto rest_lengths = tracking::edge_lengths(topology, start.positions);
-  const auto projection = tracking::default_projection(motion.field_settings());
+  const auto projection = tracking::default_projection(motion.field_settings().scale());
   std::vector<Vec3> positions = start.positions, velocities;
   std::vector<double> velocity, projecting, fairing;
   const double step = motion.period() / 60, started = wall_seconds();

@@ -6,6 +6,7 @@
 
 #include "common/quantile.h"
 #include "tools/pipeline/surface_statistics.h"
+#include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/ground_truth/mesh_errors.h"
 #include "tracking/material/material.h"
 #include "tracking/mesh/mesh_measures.h"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/particles.h"
 
 namespace flowskin::tracking {

@@ -9,15 +9,15 @@ namespace flowskin::tracking {
 namespace {
 
 constexpr int kHalvings = 6;
-constexpr double kUsualSlack = 0.1;  // effective radii
-// Below this gradient (in units of weight / radius) the field is silent: the direction to the surface is noise.
+constexpr double kUsualSlack = 0.1;  // lengths of the scale
+// Below this gradient (in units of the field's scale) the field is silent: the direction to the surface is noise.
 constexpr double kSilentGradient = 1e-9;
 
-SurfaceDistance describe(double f, const Vec3& gradient, const FieldSettings& settings) {
+SurfaceDistance describe(double f, const Vec3& gradient, const FieldScale& scale) {
   SurfaceDistance point;
   const double slope = gradient.norm();
   point.distance = std::numeric_limits<double>::infinity();
-  if (slope > kSilentGradient * settings.weight / settings.radius) {
+  if (slope > kSilentGradient * scale.value / scale.length) {
     point.normal = -gradient / slope;
     point.distance = std::abs(f) / slope;
   }
@@ -28,7 +28,7 @@ template <class Field>
 SurfaceDistance distance_at(const Field& field, const Vec3& x) {
   Vec3 gradient = Vec3::Zero();
   const double f = field.value(x, gradient);
-  return describe(f, gradient, field.settings());
+  return describe(f, gradient, field.scale());
 }
 
 template <class Field>
@@ -36,7 +36,7 @@ bool project(const Field& field, const ProjectionSettings& settings, Vec3& x, Su
   Vec3 gradient = Vec3::Zero();
   Vec3 current = x;
   double f = field.value(current, gradient);
-  const SurfaceDistance start = point = describe(f, gradient, field.settings());
+  const SurfaceDistance start = point = describe(f, gradient, field.scale());
   for (int iteration = 0; iteration < settings.max_iterations && point.distance > settings.tolerance; ++iteration) {
     if (!std::isfinite(point.distance)) break;
     Vec3 step = (f > 0 ? 1 : -1) * std::min(point.distance, settings.max_step) * point.normal;  // [FMM13, Eq. 12]
@@ -50,7 +50,7 @@ bool project(const Field& field, const ProjectionSettings& settings, Vec3& x, Su
       f = next;
       gradient = next_gradient;
     }
-    point = describe(f, gradient, field.settings());
+    point = describe(f, gradient, field.scale());
     if (!progress || (current - x).norm() > settings.max_distance) break;
   }
   if (point.distance <= settings.tolerance && (current - x).norm() <= settings.max_distance) {
@@ -82,18 +82,18 @@ void project_some(const Neighborhoods& neighborhoods, const ProjectionSettings& 
 
 }  // namespace
 
-ProjectionSettings default_projection(const FieldSettings& field) {
+ProjectionSettings default_projection(const FieldScale& scale) {
   ProjectionSettings settings;
-  settings.tolerance = 1e-7 * field.radius;
-  settings.max_step = 0.25 * field.radius;
-  settings.max_distance = field.radius;
+  settings.tolerance = 1e-7 * scale.length;
+  settings.max_step = 0.25 * scale.length;
+  settings.max_distance = scale.length;
   return settings;
 }
 
-SurfaceDistance surface_distance(const MetaballField& field, const Vec3& x) { return distance_at(field, x); }
+SurfaceDistance surface_distance(const ImplicitField& field, const Vec3& x) { return distance_at(field, x); }
 SurfaceDistance surface_distance(const LocalField& field, const Vec3& x) { return distance_at(field, x); }
 
-double largest_distance(const MetaballField& field, const std::vector<Vec3>& points) {
+double largest_distance(const ImplicitField& field, const std::vector<Vec3>& points) {
   std::vector<double> distances(points.size());
   Neighborhoods(field, points).for_each([&](int i, const LocalField& local) {
     distances[i] = distance_at(local, points[i]).distance;
@@ -101,7 +101,7 @@ double largest_distance(const MetaballField& field, const std::vector<Vec3>& poi
   return distances.empty() ? 0 : *std::max_element(distances.begin(), distances.end());
 }
 
-bool project_point(const MetaballField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point) {
+bool project_point(const ImplicitField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point) {
   return project(field, settings, x, point);
 }
 
@@ -109,11 +109,11 @@ bool project_point(const LocalField& field, const ProjectionSettings& settings, 
   return project(field, settings, x, point);
 }
 
-double usual_slack(const FieldSettings& field) { return kUsualSlack * field.radius; }
+double usual_slack(const FieldScale& scale) { return kUsualSlack * scale.length; }
 
-Projection project_to_surface(const MetaballField& field, const ProjectionSettings& settings,
+Projection project_to_surface(const ImplicitField& field, const ProjectionSettings& settings,
                               std::vector<Vec3>& positions) {
-  return project_to_surface(Neighborhoods(field, positions, usual_slack(field.settings())), settings, positions);
+  return project_to_surface(Neighborhoods(field, positions, usual_slack(field.scale())), settings, positions);
 }
 
 Projection project_to_surface(const Neighborhoods& neighborhoods, const ProjectionSettings& settings,
@@ -127,11 +127,11 @@ Projection project_to_surface(const Neighborhoods& neighborhoods, const Projecti
   return result;
 }
 
-void project_moved(const MetaballField& field, const ProjectionSettings& settings, const std::vector<int>& moved,
+void project_moved(const ImplicitField& field, const ProjectionSettings& settings, const std::vector<int>& moved,
                    std::vector<Vec3>& positions, Projection& projection) {
   std::vector<Vec3> starts(moved.size());
   for (std::size_t i = 0; i < moved.size(); ++i) starts[i] = positions[moved[i]];
-  project_some(Neighborhoods(field, starts, usual_slack(field.settings())), settings, moved, positions, projection);
+  project_some(Neighborhoods(field, starts, usual_slack(field.scale())), settings, moved, positions, projection);
 }
 
 }  // namespace flowskin::tracking

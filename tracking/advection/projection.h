@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/implicit_field.h"
 #include "tracking/field/neighborhoods.h"
 
 namespace flowskin::tracking {
@@ -15,29 +15,29 @@ struct ProjectionSettings {
   int max_iterations = 30;
 };
 
-/// tolerance 1e-7, max_step 0.25, max_distance 1 effective radii.
-ProjectionSettings default_projection(const FieldSettings& field);
+/// tolerance 1e-7, max_step 0.25, max_distance 1 lengths of the scale.
+ProjectionSettings default_projection(const FieldScale& scale);
 
 /// Where a projection ended.
 struct SurfaceDistance {
-  Vec3 normal = Vec3::Zero();  ///< -grad f / |grad f| at the point, outward; zero where no particle is near.
-  double distance = 0;         ///< |f| / |grad f| (m); infinite where no particle is near.
+  Vec3 normal = Vec3::Zero();  ///< -grad f / |grad f| at the point, outward; zero where the field is silent.
+  double distance = 0;         ///< |f| / |grad f| (m); infinite where the field is silent.
 };
 
 /// |f| / |grad f| and the normal at a point.
-SurfaceDistance surface_distance(const MetaballField& field, const Vec3& x);
+SurfaceDistance surface_distance(const ImplicitField& field, const Vec3& x);
 SurfaceDistance surface_distance(const LocalField& field, const Vec3& x);
 /// The largest |f| / |grad f| at these points (m); 0 where there are none.
-double largest_distance(const MetaballField& field, const std::vector<Vec3>& points);
+double largest_distance(const ImplicitField& field, const std::vector<Vec3>& points);
 
 /// Newton's iteration x - f grad f / |grad f|^2 with limited steps, halved while they do not bring |f| down. Where it
 /// fails (silent field, no progress, too far) x is left at its start.
 /// @return false where it failed; `point` describes the place where x is in the end.
-bool project_point(const MetaballField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point);
+bool project_point(const ImplicitField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point);
 bool project_point(const LocalField& field, const ProjectionSettings& settings, Vec3& x, SurfaceDistance& point);
 
 /// How far around its start a vertex that is moved along the surface usually stays (m): a slack for Neighborhoods.
-double usual_slack(const FieldSettings& field);
+double usual_slack(const FieldScale& scale);
 
 /// What became of all vertices.
 struct Projection {
@@ -48,7 +48,7 @@ struct Projection {
 };
 
 /// project_point for every vertex.
-Projection project_to_surface(const MetaballField& field, const ProjectionSettings& settings,
+Projection project_to_surface(const ImplicitField& field, const ProjectionSettings& settings,
                               std::vector<Vec3>& positions);
 /// The same with the neighbourhoods of the positions, or of places near them; best with the usual slack.
 Projection project_to_surface(const Neighborhoods& neighborhoods, const ProjectionSettings& settings,
@@ -56,7 +56,7 @@ Projection project_to_surface(const Neighborhoods& neighborhoods, const Projecti
 
 /// Brings a projection up to date where only some vertices have moved since.
 /// @param moved the numbers of all vertices that have moved or failed
-void project_moved(const MetaballField& field, const ProjectionSettings& settings, const std::vector<int>& moved,
+void project_moved(const ImplicitField& field, const ProjectionSettings& settings, const std::vector<int>& moved,
                    std::vector<Vec3>& positions, Projection& projection);
 
 }  // namespace flowskin::tracking

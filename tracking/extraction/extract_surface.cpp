@@ -51,8 +51,8 @@ void flip_towards_delaunay(SurfaceGeometry& surface) {
   }
 }
 
-SurfaceGeometry improve_part(const MetaballField& field, double edge_length, SurfaceGeometry surface) {
-  const ProjectionSettings projection = default_projection(field.settings());
+SurfaceGeometry improve_part(const ImplicitField& field, double edge_length, SurfaceGeometry surface) {
+  const ProjectionSettings projection = default_projection(field.scale());
   for (int pass = 0; pass < kCollapsePasses; ++pass) {
     if (collapse_short_edges(kShortEdge * edge_length, kLongEdge * edge_length, surface) == 0) break;
   }
@@ -91,12 +91,12 @@ void append(const SurfaceGeometry& part, SurfaceGeometry& whole) {
 
 }  // namespace
 
-SurfaceGeometry extract_raw_surface(const MetaballField& field, double edge_length) {
-  const SparseGrid grid = SparseGrid::of_field(field, edge_length);
+SurfaceGeometry extract_raw_surface(const ImplicitField& field, double edge_length) {
+  const SparseGrid grid = field.on_grid(edge_length);
   return march(grid, [&](const Vec3& x) { return field.value(x); });
 }
 
-SurfaceGeometry improve_surface(const MetaballField& field, double edge_length, const SurfaceGeometry& surface) {
+SurfaceGeometry improve_surface(const ImplicitField& field, double edge_length, const SurfaceGeometry& surface) {
   const MeshComponents components = mesh_components(surface.positions, surface.triangles);
   SurfaceGeometry result;
   for (const SurfaceGeometry& part : split(surface, components)) {
@@ -106,11 +106,11 @@ SurfaceGeometry improve_surface(const MetaballField& field, double edge_length, 
     // A part hardly larger than a triangle loses too much of its shape: it stays as marching cubes made it.
     append(change <= kLargestVolumeChange * std::abs(volume) ? improved : part, result);
   }
-  project_to_surface(field, default_projection(field.settings()), result.positions);
+  project_to_surface(field, default_projection(field.scale()), result.positions);
   return result;
 }
 
-SurfaceGeometry extract_surface(const MetaballField& field, double edge_length) {
+SurfaceGeometry extract_surface(const ImplicitField& field, double edge_length) {
   return improve_surface(field, edge_length, extract_raw_surface(field, edge_length));
 }
 

@@ -1,11 +1,12 @@
-// Values of the field at the nodes of a uniform grid, kept only near particles.
+// Values of a field at the nodes of a uniform grid, kept only where its surface may be.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
-#include "tracking/field/metaball_field.h"
+#include "common/vectors.h"
 
 namespace flowskin::tracking {
 
@@ -21,23 +22,39 @@ class SparseGrid {
     std::array<double, kNodes> values;  ///< z runs fastest.
   };
 
-  /// The metaball field [FMM13, Eq. 13]: every particle adds its kernel to the nodes in its support. There is at least
-  /// one layer of nodes with the outside value, -T, around the supports.
-  /// @param shares factors of the particles' weights; empty: 1 each
-  /// @throws std::invalid_argument where the particles spread over more than two million blocks along an axis, or where
-  /// spacing, radius or threshold are not positive.
-  static SparseGrid of_particles(const std::vector<Vec3>& positions, const FieldSettings& settings, double spacing,
-                                 const std::vector<double>& shares = {});
+  /// A range of nodes along each axis, both ends included.
+  struct NodeBox {
+    Index low, high;
+  };
 
-  /// The field's particles, and its walls where those are.
-  static SparseGrid of_field(const MetaballField& field, double spacing);
+  /// Blocks with the outside value at every node.
+  /// @param outside not positive
+  /// @param keys of the blocks' places, in any order, each as often as one likes
+  SparseGrid(double spacing, double outside, std::vector<std::uint64_t> keys);
+
+  /// The values of a function at the nodes within a box, which holds its surface.
+  /// @throws std::invalid_argument where the box spreads over more than two million blocks along an axis, or the
+  /// spacing is not positive.
+  static SparseGrid of_function(const std::function<double(const Vec3&)>& value, const Box& box, double outside,
+                                double spacing);
 
   /// A box of size[0] x size[1] x size[2] given values, z runs fastest, surrounded by the outside value.
   static SparseGrid of_values(const Index& size, const std::vector<double>& values, double outside, double spacing);
 
+  /// Keys ascend in lexicographic order of the places.
+  static std::uint64_t key(const Index& place);
+  /// The nodes from one place to another (m).
+  /// @throws std::invalid_argument where those are not finite or too far away.
+  static NodeBox nodes_within(const Vec3& low, const Vec3& high, double spacing);
+  /// Calls visit(place) for every block that meets the box widened by `margin` nodes.
+  template <class Visit>
+  static void for_each_block(const NodeBox& box, int margin, const Visit& visit);
+
   double spacing() const { return spacing_; }
   double outside() const { return outside_; }
   const std::vector<Block>& blocks() const { return blocks_; }
+  /// To be filled.
+  std::vector<Block>& blocks() { return blocks_; }
   /// Number of the block at a place; -1 where there is none.
   int find(const Index& place) const;
   /// Where a node is (m). Nodes are shifted against the origin by an odd share of the spacing, so that particles on a
@@ -54,14 +71,26 @@ class SparseGrid {
   static int node_in_block(int i, int j, int k) { return (i * kSide + j) * kSide + k; }
 
  private:
-  SparseGrid(double spacing, double outside) : spacing_(spacing), outside_(outside) {}
-  void allocate(std::vector<std::uint64_t> keys);
-  void add_wall(const FieldWall& wall, const FieldSettings& settings);
+  static int block_coordinate(int node);
 
   double spacing_;
   double outside_;
   std::vector<std::uint64_t> keys_;  // ascending; one per block
   std::vector<Block> blocks_;
 };
+
+template <class Visit>
+void SparseGrid::for_each_block(const NodeBox& box, int margin, const Visit& visit) {
+  Index low{}, high{};
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = block_coordinate(box.low[axis] - margin);
+    high[axis] = block_coordinate(box.high[axis] + margin);
+  }
+  for (int i = low[0]; i <= high[0]; ++i) {
+    for (int j = low[1]; j <= high[1]; ++j) {
+      for (int k = low[2]; k <= high[2]; ++k) visit(Index{i, j, k});
+    }
+  }
+}
 
 }  // namespace flowskin::tracking

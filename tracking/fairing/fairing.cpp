@@ -103,15 +103,15 @@ Vec3 fairing_move(const SpringMesh& mesh, int vertex, const Vec3& normal, const 
   return plane * move;
 }
 
-void fair(const MetaballField& field, const MeshAdjacency& topology, const std::vector<double>& rest_lengths,
+void fair(const ImplicitField& field, const MeshAdjacency& topology, const std::vector<double>& rest_lengths,
           const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions) {
-  fair(Neighborhoods(field, positions, usual_slack(field.settings())), topology, rest_lengths, settings, confidence,
+  fair(Neighborhoods(field, positions, usual_slack(field.scale())), topology, rest_lengths, settings, confidence,
        positions);
 }
 
 void fair(const Neighborhoods& neighborhoods, const MeshAdjacency& topology, const std::vector<double>& rest_lengths,
           const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions) {
-  const double longest_step = default_projection(neighborhoods.field().settings()).max_step;
+  const double longest_step = default_projection(neighborhoods.field().scale()).max_step;
   const SpringsInOrder springs(topology, rest_lengths, neighborhoods);
   const SpringMesh mesh{springs.topology, springs.rest_lengths, confidence.empty() ? Laying::projected : Laying::turned,
                         settings.stiffness};

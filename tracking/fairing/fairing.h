@@ -25,7 +25,7 @@ struct FairingSettings {
 ///   plane (the paper projects them, which shortens them on a curved surface), so that a mesh whose edges all have
 ///   their rest lengths does not move.
 /// @param positions on the surface, or near it.
-void fair(const MetaballField& field, const MeshAdjacency& topology, const std::vector<double>& rest_lengths,
+void fair(const ImplicitField& field, const MeshAdjacency& topology, const std::vector<double>& rest_lengths,
           const FairingSettings& settings, const std::vector<Confidence>& confidence, std::vector<Vec3>& positions);
 /// The same with the neighbourhoods of the positions, or of places near them; best with the usual slack.
 void fair(const Neighborhoods& neighborhoods, const MeshAdjacency& topology, const std::vector<double>& rest_lengths,

@@ -97,7 +97,7 @@ bool is_inverted(const Triangle& triangle, const std::vector<Vec3>& positions, c
   return !(largest > kInvertedCosine * area.norm());
 }
 
-void relax(const MetaballField& field, const ProjectionSettings& projection, const MeshAdjacency& topology,
+void relax(const ImplicitField& field, const ProjectionSettings& projection, const MeshAdjacency& topology,
            const std::vector<Triangle>& triangles, int iterations, const std::vector<int>& vertices,
            std::vector<Vec3>& positions, std::vector<Vec3>& normals, Ridges ridges) {
   std::vector<int> moving = vertices;
@@ -109,7 +109,7 @@ void relax(const MetaballField& field, const ProjectionSettings& projection, con
   std::vector<char> inverted(touched.size());
   std::vector<Vec3> starts(moving.size());
   for (std::size_t i = 0; i < moving.size(); ++i) starts[i] = positions[moving[i]];
-  const Neighborhoods neighborhoods(field, starts, usual_slack(field.settings()));
+  const Neighborhoods neighborhoods(field, starts, usual_slack(field.scale()));
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const std::vector<Vec3> old_positions = positions, old_normals = normals;
     for (std::size_t i = 0; i < touched.size(); ++i)

@@ -16,7 +16,7 @@ enum class Ridges { ignored, kept };
 /// triangle inside out are taken back, and a vertex that does not reach the surface stays where it was.
 /// @param normals outward unit normals at the vertices, brought up to date.
 /// @param vertices the ones that may move; empty: all.
-void relax(const MetaballField& field, const ProjectionSettings& projection, const MeshAdjacency& topology,
+void relax(const ImplicitField& field, const ProjectionSettings& projection, const MeshAdjacency& topology,
            const std::vector<Triangle>& triangles, int iterations, const std::vector<int>& vertices,
            std::vector<Vec3>& positions, std::vector<Vec3>& normals, Ridges ridges = Ridges::ignored);
 

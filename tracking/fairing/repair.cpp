@@ -33,7 +33,7 @@ std::vector<int> surroundings(const std::vector<int>& failed, const std::vector<
 
 }  // namespace
 
-void repair(const MetaballField& field, const ProjectionSettings& settings, const MeshAdjacency& topology,
+void repair(const ImplicitField& field, const ProjectionSettings& settings, const MeshAdjacency& topology,
             const std::vector<Triangle>& triangles, std::vector<Vec3>& positions, Projection& projection) {
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<int> bad = bad_triangles(positions, triangles, topology, projection.normals);

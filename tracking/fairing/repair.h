@@ -12,7 +12,7 @@ namespace flowskin::tracking {
 /// triangles, a few times with growing effort, until none are left or nothing helps. The rest of the mesh stays as it
 /// is.
 /// @param projection of the positions as they are; brought up to date.
-void repair(const MetaballField& field, const ProjectionSettings& settings, const MeshAdjacency& topology,
+void repair(const ImplicitField& field, const ProjectionSettings& settings, const MeshAdjacency& topology,
             const std::vector<Triangle>& triangles, std::vector<Vec3>& positions, Projection& projection);
 
 }  // namespace flowskin::tracking

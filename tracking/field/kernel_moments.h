@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "tracking/particles.h"
+#include "common/vectors.h"
 
 namespace flowskin::tracking {
 

@@ -65,7 +65,7 @@ void advect_markers(const FlowAt& flow_at, double time, int steps, Markers& mark
   markers.time = time;
 }
 
-void settle_markers(const MetaballField& field, double most_depth, Markers& markers) {
+void settle_markers(const ImplicitField& field, double most_depth, Markers& markers) {
   const auto count = static_cast<int>(markers.positions.size());
 #pragma omp parallel for schedule(dynamic, 64)
   for (int i = 0; i < count; ++i) {

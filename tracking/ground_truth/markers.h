@@ -46,6 +46,6 @@ void advect_markers(const FlowAt& flow_at, double time, int steps, Markers& mark
 
 /// Looks where the markers are on the surface now: markers farther than `most_depth` from it (m), in the fluid or out
 /// of it, leave. Markers are not put back onto f = 0: they know the material only.
-void settle_markers(const MetaballField& field, double most_depth, Markers& markers);
+void settle_markers(const ImplicitField& field, double most_depth, Markers& markers);
 
 }  // namespace flowskin::tracking

@@ -20,8 +20,8 @@ constexpr double kRegularization = 1e-6;  // of the moment matrix; keeps planar 
 
 // Neighbours of x, the nearest first is `nearest`; the support grows until it holds a particle.
 // Only the first `count` particles of the field count.
-int find_neighbors(const MetaballField& field, int count, const Vec3& x, double& radius, std::vector<int>& found) {
-  radius = field.settings().radius;
+int find_neighbors(const ParticleField& field, int count, const Vec3& x, double& radius, std::vector<int>& found) {
+  radius = field.radius();
   const auto find = [&] {
     field.neighbors(x, radius, found);
     std::erase_if(found, [count](int p) { return p >= count; });  // of a state that the field is leaving behind
@@ -51,7 +51,7 @@ bool is_torn(const Triangle& triangle, const std::vector<Vec3>& positions, const
 class DisplacementFit {
  public:
   template <class Displacement>
-  DisplacementFit(const MetaballField& field, const Displacement& displacement, const Vec3& x, double radius,
+  DisplacementFit(const ParticleField& field, const Displacement& displacement, const Vec3& x, double radius,
                   const std::vector<int>& particles)
       : x_(x), radius_(radius) {
     Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
@@ -86,7 +86,7 @@ class DisplacementFit {
 
 }  // namespace
 
-Vec3 material_place_at(const MetaballField& field, const std::vector<Vec3>& particle_places, const Vec3& x) {
+Vec3 material_place_at(const ParticleField& field, const std::vector<Vec3>& particle_places, const Vec3& x) {
   std::vector<int> found;
   double radius = 0;
   const int closest = find_neighbors(field, static_cast<int>(particle_places.size()), x, radius, found);
@@ -108,7 +108,7 @@ Vec3 material_place_at(const MetaballField& field, const std::vector<Vec3>& part
   return x + (half.is_known() ? half.at(x) : known);
 }
 
-Vec3 rest_position_at(const MetaballField& field, const Particles& particles, const Vec3& x) {
+Vec3 rest_position_at(const ParticleField& field, const Particles& particles, const Vec3& x) {
   return material_place_at(field, particles.rest_positions, x);
 }
 
@@ -117,7 +117,7 @@ const std::vector<Vec3>& particle_layer(const Particles& particles, std::size_t 
   return k < particles.layers.size() ? particles.layers[k] : unknown;
 }
 
-std::vector<double> material_drift(const SurfaceMesh& mesh, const MetaballField& field, const Particles& particles) {
+std::vector<double> material_drift(const SurfaceMesh& mesh, const ParticleField& field, const Particles& particles) {
   std::vector<double> drift(mesh.positions.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (int v = 0; v < static_cast<int>(drift.size()); ++v) {
@@ -126,10 +126,10 @@ std::vector<double> material_drift(const SurfaceMesh& mesh, const MetaballField&
   return drift;
 }
 
-std::vector<double> material_scatter(const MetaballField& field, const Particles& particles, std::size_t most) {
+std::vector<double> material_scatter(const ParticleField& field, const Particles& particles, std::size_t most) {
   const std::size_t count = particles.rest_positions.size(), step = std::max<std::size_t>(1, count / most);
   std::vector<double> scatter(count / step, std::numeric_limits<double>::quiet_NaN());
-  const double radius = field.settings().radius;
+  const double radius = field.radius();
   const auto displacement = [&](int p) { return Vec3(particles.rest_positions[p] - particles.positions[p]); };
 #pragma omp parallel for schedule(dynamic, 16)
   for (std::ptrdiff_t i = 0; i < std::ssize(scatter); ++i) {
@@ -145,7 +145,7 @@ std::vector<double> material_scatter(const MetaballField& field, const Particles
   return scatter;
 }
 
-int limit_slip(double limit, const MetaballField& field, const Particles& particles, SurfaceMesh& mesh) {
+int limit_slip(double limit, const ParticleField& field, const Particles& particles, SurfaceMesh& mesh) {
   std::vector<char> held(mesh.positions.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (int v = 0; v < static_cast<int>(held.size()); ++v) {
@@ -160,7 +160,7 @@ int limit_slip(double limit, const MetaballField& field, const Particles& partic
 }
 
 MaterialCarrier::MaterialCarrier(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                                 const MetaballField& field, const Particles& particles,
+                                 const ImplicitField& field, const Particles& particles,
                                  const MaterialSettings& settings)
     : positions_(positions),
       triangles_(triangles),
@@ -209,7 +209,8 @@ MaterialCarrier::Source MaterialCarrier::source_of(const Vec3& x, const Vec3& no
 Vec3 MaterialCarrier::place(const Vec3& x, const Source& source, const std::vector<Vec3>& on_mesh,
                             const std::vector<Vec3>& on_particles) const {
   if (source.same_side.triangle >= 0) return interpolated(source.same_side, on_mesh);
-  if (!on_particles.empty()) return material_place_at(field_, on_particles, x);
+  if (!on_particles.empty())
+    return material_place_at(particles_of(field_, "the material of particles"), on_particles, x);
   const MeshPoint& far = source.any_side;
   return far.triangle < 0 ? x : x + interpolated(far, on_mesh) - interpolated(far, positions_);
 }
@@ -219,7 +220,7 @@ std::vector<int> same_vertices(const SurfacePoints& old_vertices, const SurfaceP
 }
 
 SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& geometry,
-                           const std::vector<Vec3>& normals, const MetaballField& field, const Particles& particles,
+                           const std::vector<Vec3>& normals, const ImplicitField& field, const Particles& particles,
                            const MaterialSettings& settings) {
   const int count = static_cast<int>(geometry.positions.size());
   SurfaceMesh mesh;

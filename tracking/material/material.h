@@ -6,7 +6,8 @@
 
 #include "common/closest_point.h"
 #include "tracking/extraction/marching_cubes.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/implicit_field.h"
+#include "tracking/field/particle_field.h"
 #include "tracking/mesh/point_tree.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/particles.h"
@@ -19,27 +20,27 @@ namespace flowskin::tracking {
 /// displacement is linear.
 /// @param field whose first positions are those of `particles`, in their order
 /// @pre There is at least one particle, and their rest positions are known.
-Vec3 rest_position_at(const MetaballField& field, const Particles& particles, const Vec3& x);
+Vec3 rest_position_at(const ParticleField& field, const Particles& particles, const Vec3& x);
 
 /// The same for other places of the particles' material (m), one per particle.
 /// @pre There is at least one particle.
-Vec3 material_place_at(const MetaballField& field, const std::vector<Vec3>& particle_places, const Vec3& x);
+Vec3 material_place_at(const ParticleField& field, const std::vector<Vec3>& particle_places, const Vec3& x);
 
 /// Distance between the rest position that each vertex carries and that of the particles beneath it (m): how far the
 /// texture has drifted off its material.
-std::vector<double> material_drift(const SurfaceMesh& mesh, const MetaballField& field, const Particles& particles);
+std::vector<double> material_drift(const SurfaceMesh& mesh, const ParticleField& field, const Particles& particles);
 
 /// How far the material of a particle lies from where that of its neighbours puts it (m): the distance between its rest
 /// position and the moving-least-squares rest position of the others at its place, for at most `most` particles evenly
 /// spread over their ids. 0 where the motion is smooth; where particles have mixed, no texture that is smooth can be
 /// nearer to them than this. A particle without neighbours counts for nothing.
-std::vector<double> material_scatter(const MetaballField& field, const Particles& particles, std::size_t most = 1000);
+std::vector<double> material_scatter(const ParticleField& field, const Particles& particles, std::size_t most = 1000);
 
 /// Holds the rest positions of a mesh within `limit` (m) of those of the particles beneath: farther ones are pulled
 /// back to that distance. A surface that is carried by the best of velocities still slips off its particles in time,
 /// and where fluid comes from an inlet, or up from inside, new surface would go on with the material of its neighbours.
 /// @return how many vertices were held back
-int limit_slip(double limit, const MetaballField& field, const Particles& particles, SurfaceMesh& mesh);
+int limit_slip(double limit, const ParticleField& field, const Particles& particles, SurfaceMesh& mesh);
 
 /// How an old mesh hands its material over; lengths in metres.
 struct MaterialSettings {
@@ -58,7 +59,7 @@ class MaterialCarrier {
  public:
   /// Keeps references to all.
   MaterialCarrier(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                  const MetaballField& field, const Particles& particles, const MaterialSettings& settings);
+                  const ImplicitField& field, const Particles& particles, const MaterialSettings& settings);
   /// Appends rest positions and layers of the material at these places of the surface to those of `mesh`.
   /// @param old what the vertices of the old surface know of the material; may be `mesh` itself
   /// @param normals outward, of the surface at the places
@@ -78,7 +79,7 @@ class MaterialCarrier {
 
   const std::vector<Vec3>& positions_;
   const std::vector<Triangle>& triangles_;
-  const MetaballField& field_;
+  const ImplicitField& field_;
   const Particles& particles_;
   MaterialSettings settings_;
   ClosestPointTree tree_;
@@ -97,7 +98,7 @@ std::vector<int> same_vertices(const SurfacePoints& old_vertices, const SurfaceP
 /// @param old_mesh at the time of the field; may be empty
 /// @param normals outward normals of the geometry's vertices
 SurfaceMesh carry_material(const SurfaceMesh& old_mesh, const SurfaceGeometry& geometry,
-                           const std::vector<Vec3>& normals, const MetaballField& field, const Particles& particles,
+                           const std::vector<Vec3>& normals, const ImplicitField& field, const Particles& particles,
                            const MaterialSettings& settings);
 
 }  // namespace flowskin::tracking

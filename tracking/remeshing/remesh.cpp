@@ -209,20 +209,20 @@ RemeshReport remesh(const std::function<void(std::vector<Vec3>&)>& put_on_surfac
   return report;
 }
 
-RemeshReport remesh(const MetaballField& field, const RemeshSettings& settings, SurfaceMesh& mesh) {
+RemeshReport remesh(const ImplicitField& field, const RemeshSettings& settings, SurfaceMesh& mesh) {
   const auto put_on_surface = [&](std::vector<Vec3>& points) {
-    project_to_surface(field, default_projection(field.settings()), points);
+    project_to_surface(field, default_projection(field.scale()), points);
   };
   return remesh(put_on_surface, settings, mesh, sizes_by_curvature(field, settings, mesh.positions));
 }
 
-std::vector<double> sizes_by_curvature(const MetaballField& field, const RemeshSettings& settings,
+std::vector<double> sizes_by_curvature(const ImplicitField& field, const RemeshSettings& settings,
                                        const std::vector<Vec3>& positions) {
   if (!(settings.curvature > 0)) return {};
   std::vector<double> sizes(positions.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::ptrdiff_t v = 0; v < std::ssize(sizes); ++v) {
-    const Jet jet = field.jet(positions[v]);
+    const MotionJet jet = field.motion_jet(positions[v]);
     const Curvatures curvature = curvatures(jet.gradient, jet.hessian);
     // The principal curvatures are H + s and H - s.
     const double s = std::sqrt(std::max(0.0, curvature.mean * curvature.mean - curvature.gaussian));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tracking/advection/projection.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/implicit_field.h"
 #include "tracking/mesh/adjacency.h"
 #include "tracking/mesh/surface_mesh.h"
 
@@ -33,7 +33,7 @@ struct RemeshReport {
 /// the middle of a split edge takes the mean of its ends' rest positions, a new id, and is put on the surface; its rest
 /// position follows as far as the surface was bent there at rest, too.
 /// @pre `mesh` is closed and two-manifold; it stays so.
-RemeshReport remesh(const MetaballField& field, const RemeshSettings& settings, SurfaceMesh& mesh);
+RemeshReport remesh(const ImplicitField& field, const RemeshSettings& settings, SurfaceMesh& mesh);
 
 /// The same on any surface.
 /// @param put_on_surface moves points onto it
@@ -43,7 +43,7 @@ RemeshReport remesh(const std::function<void(std::vector<Vec3>&)>& put_on_surfac
 
 /// Targets by curvature at points on the surface, in edge lengths: `curvature` times the smaller radius of curvature,
 /// held between `finest` and 1.
-std::vector<double> sizes_by_curvature(const MetaballField& field, const RemeshSettings& settings,
+std::vector<double> sizes_by_curvature(const ImplicitField& field, const RemeshSettings& settings,
                                        const std::vector<Vec3>& positions);
 
 /// Rest lengths of the springs after remeshing: an edge that was there before keeps its own, a new one takes its

@@ -245,7 +245,7 @@ class MeshUnderRepair {
     projection_.distances.resize(number.size());
     keep_numbered(number, projection_.normals);
     keep_numbered(number, projection_.distances);
-    project_moved(fresh_.field, default_projection(fresh_.field.settings()), moved, mesh_.positions, projection_);
+    project_moved(fresh_.field, default_projection(fresh_.field.scale()), moved, mesh_.positions, projection_);
   }
 
   const FieldGrid& fresh_;
@@ -285,9 +285,9 @@ void round_small_parts(const TopologySettings& settings, SurfaceMesh& mesh, Topo
 
 }  // namespace
 
-TopologyReport change_topology(const MetaballField& field, const Particles& particles, const TopologySettings& settings,
+TopologyReport change_topology(const ImplicitField& field, const Particles& particles, const TopologySettings& settings,
                                SurfaceMesh& mesh, Projection& projection) {
-  const SparseGrid grid = SparseGrid::of_field(field, settings.edge_length);
+  const SparseGrid grid = field.on_grid(settings.edge_length);
   const FieldGrid fresh{field, grid};
   SurfaceGeometry expected = march(grid);
   put_small_parts_on_roots(fresh, settings.edge_length, expected);

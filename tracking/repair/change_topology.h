@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tracking/advection/projection.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/implicit_field.h"
 #include "tracking/material/material.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/particles.h"
@@ -58,7 +58,7 @@ struct TopologyReport {
 /// end the mesh has as many parts and holes as a fresh extraction; where features are smaller than a cell they may
 /// differ, and `counts` and `expected` tell.
 /// @param projection of the mesh's vertices; brought up to date
-TopologyReport change_topology(const MetaballField& field, const Particles& particles, const TopologySettings& settings,
+TopologyReport change_topology(const ImplicitField& field, const Particles& particles, const TopologySettings& settings,
                                SurfaceMesh& mesh, Projection& projection);
 
 }  // namespace flowskin::tracking

@@ -147,7 +147,7 @@ std::vector<Probe> probe_nodes(const SparseGrid& grid, const std::vector<GridCro
 }
 
 // |f| / |grad f| (m) at the probes where mesh and field do not agree which side they are on; -1 at the others.
-std::vector<double> depths_on_wrong_side(const MetaballField& field, const SparseGrid& grid,
+std::vector<double> depths_on_wrong_side(const ImplicitField& field, const SparseGrid& grid,
                                          const std::vector<Probe>& probes) {
   std::vector<double> depths(probes.size(), -1);
 #pragma omp parallel for schedule(dynamic, 64)
@@ -164,7 +164,7 @@ std::vector<double> depths_on_wrong_side(const MetaballField& field, const Spars
 
 }  // namespace
 
-std::vector<Cell> disagreeing_cells(const MetaballField& field, const SparseGrid& grid, double depth,
+std::vector<Cell> disagreeing_cells(const ImplicitField& field, const SparseGrid& grid, double depth,
                                     const GridCrossings& crossings, std::vector<Cell>* shallow) {
   std::vector<Probe> probes = probe_nodes(grid, crossings[2]);
   for (int axis = 0; axis < 3; ++axis) probe_edges(crossings[axis], axis, probes);
@@ -179,7 +179,7 @@ std::vector<Cell> disagreeing_cells(const MetaballField& field, const SparseGrid
   return cells;
 }
 
-std::vector<Cell> displaced_cells(const MetaballField& field, const SparseGrid& grid, double apart,
+std::vector<Cell> displaced_cells(const ImplicitField& field, const SparseGrid& grid, double apart,
                                   const GridCrossings& crossings) {
   std::vector<Probe> probes;
   for (int axis = 0; axis < 3; ++axis) probe_beside(grid, crossings[axis], axis, apart, probes);

@@ -5,7 +5,7 @@
 
 #include "tracking/advection/projection.h"
 #include "tracking/extraction/cell_set.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/implicit_field.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/repair/grid_crossings.h"
 
@@ -19,14 +19,14 @@ namespace flowskin::tracking {
 /// @param crossings of all triangles of the mesh
 /// @param shallow cells with a place that is less deep are added
 /// @pre The mesh is closed.
-std::vector<CellSet::Cell> disagreeing_cells(const MetaballField& field, const SparseGrid& grid, double depth,
+std::vector<CellSet::Cell> disagreeing_cells(const ImplicitField& field, const SparseGrid& grid, double depth,
                                              const GridCrossings& crossings,
                                              std::vector<CellSet::Cell>* shallow = nullptr);
 
 /// The cells at grid edges that mesh and field cross at places farther from each other than `apart` (cells, below 1):
 /// the mesh cuts off a ridge there, or bridges a groove, however shallow.
 /// @param crossings of all triangles of the mesh, or of some
-std::vector<CellSet::Cell> displaced_cells(const MetaballField& field, const SparseGrid& grid, double apart,
+std::vector<CellSet::Cell> displaced_cells(const ImplicitField& field, const SparseGrid& grid, double apart,
                                            const GridCrossings& crossings);
 
 /// The cells at grid edges that the mesh crosses more than once: marching cubes sees nothing of what is between.

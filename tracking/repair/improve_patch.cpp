@@ -178,7 +178,7 @@ bool may_move(const LocalMesh& mesh, const MeshAdjacency& topology, int vertex, 
 // vertex stays, with its id and all that it carries.
 void keep_old_vertices(const FieldGrid& fresh, const MeshToMend& whole, const MeshPatch& patch, LocalMesh& mesh) {
   const double edge_length = fresh.grid.spacing();
-  const double tolerance = default_projection(fresh.field.settings()).tolerance;
+  const double tolerance = default_projection(fresh.field.scale()).tolerance;
   std::vector<int> dropped = mesh.dropped(whole, patch);
   const SurfaceGeometry raw = geometry_of(whole, patch);
   const ClosestPointTree fresh_surface(raw.positions, raw.triangles);
@@ -250,7 +250,7 @@ void flip_towards_delaunay(LocalMesh& mesh) {
 void improve_patch(const FieldGrid& fresh, const MeshToMend& whole, const std::vector<int>& kept, Finish finish,
                    const CellSet& frozen, MeshPatch& patch) {
   const double edge_length = fresh.grid.spacing();
-  const ProjectionSettings projection = default_projection(fresh.field.settings());
+  const ProjectionSettings projection = default_projection(fresh.field.scale());
   LocalMesh mesh(whole, kept, patch);
   mesh.freeze(fresh.grid, frozen);
   for (int v = mesh.old_count(); v < static_cast<int>(mesh.positions().size()); ++v) {

@@ -7,7 +7,7 @@
 
 #include "common/triangle_tree.h"
 #include "tracking/extraction/cell_set.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/implicit_field.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/repair/triangle_bins.h"
 
@@ -23,7 +23,7 @@ struct MeshPatch {
 
 /// What is known of the field on a grid.
 struct FieldGrid {
-  const MetaballField& field;
+  const ImplicitField& field;
   const SparseGrid& grid;  ///< Its values; the spacing is the wanted edge length.
 };
 

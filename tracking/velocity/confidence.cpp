@@ -34,10 +34,10 @@ Confidence field_confidence(const SurfacePoint& point) {
   return confidence;
 }
 
-std::vector<Confidence> field_confidence(const MetaballField& field, const std::vector<Vec3>& positions) {
+std::vector<Confidence> field_confidence(const ImplicitField& field, const std::vector<Vec3>& positions) {
   std::vector<Confidence> confidences(positions.size());
   Neighborhoods(field, positions).for_each([&](int v, const LocalField& local) {
-    confidences[v] = field_confidence(SurfacePoint(local.jet(positions[v]), field.settings()));
+    confidences[v] = field_confidence(SurfacePoint(local.motion_jet(positions[v]), field.scale()));
   });
   return confidences;
 }

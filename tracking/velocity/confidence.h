@@ -23,6 +23,6 @@ struct Confidence {
 Confidence field_confidence(const SurfacePoint& point);
 
 /// At each vertex.
-std::vector<Confidence> field_confidence(const MetaballField& field, const std::vector<Vec3>& positions);
+std::vector<Confidence> field_confidence(const ImplicitField& field, const std::vector<Vec3>& positions);
 
 }  // namespace flowskin::tracking

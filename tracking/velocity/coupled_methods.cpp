@@ -13,7 +13,7 @@ template <class Motion>
 class CoupledVelocity final : public VelocityMethod {
  public:
   explicit CoupledVelocity(const CouplingWeights& weights) : weights_(weights) {}
-  void evaluate(const MetaballField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
+  void evaluate(const ImplicitField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
     coupled_velocities<Motion>(field, topology, positions, weights_, SolverLimits{}, velocities);
   }

@@ -48,7 +48,7 @@ class CoupledSystem {
   using Gradient = typename Motion::Gradient;
   using Field = std::vector<Vector>;  // one motion per vertex: velocity (radii/s) and gradient parameters (1/s)
 
-  CoupledSystem(const MetaballField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
+  CoupledSystem(const ImplicitField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
                 const CouplingWeights& weights)
       : count_(static_cast<int>(positions.size())),
         topology_(topology.vertex_count() == count_ ? &topology : nullptr),
@@ -94,13 +94,13 @@ class CoupledSystem {
   Vec3 velocity(int vertex) const { return start_[vertex].template head<3>(); }
 
  private:
-  void add_field_rows(const MetaballField& field, const std::vector<Vec3>& positions) {
-    const FieldSettings& settings = field.settings();
+  void add_field_rows(const ImplicitField& field, const std::vector<Vec3>& positions) {
+    const FieldScale scale = field.scale();
     Neighborhoods(field, positions).for_each([&](int v, const LocalField& local) {
-      places_[v] = positions[v] / settings.radius;
+      places_[v] = positions[v] / scale.length;
       blocks_[v].setZero();
       right_side_[v].setZero();
-      const SurfacePoint point(local.jet(positions[v]), settings);
+      const SurfacePoint point(local.motion_jet(positions[v]), scale);
       if (!point.defined) return;
       const MotionRows<Motion> rows = field_rows(local, positions[v], point, weights_.rows, Motion());
       const Matrix block = rows.matrix.transpose() * rows.matrix;
@@ -326,12 +326,12 @@ class CoupledSystem {
 }  // namespace
 
 template <class Motion>
-CouplingReport coupled_velocities(const MetaballField& field, const MeshAdjacency& topology,
+CouplingReport coupled_velocities(const ImplicitField& field, const MeshAdjacency& topology,
                                   const std::vector<Vec3>& positions, const CouplingWeights& weights,
                                   const SolverLimits& limits, std::vector<Vec3>& velocities) {
   CoupledSystem<Motion> system(field, topology, positions, weights);
   const CouplingReport report = system.solve(limits);
-  const double radius = field.settings().radius;
+  const double radius = field.scale().length;
   velocities.resize(positions.size());
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const Vec3 velocity = radius * system.velocity(static_cast<int>(v));
@@ -340,10 +340,10 @@ CouplingReport coupled_velocities(const MetaballField& field, const MeshAdjacenc
   return report;
 }
 
-template CouplingReport coupled_velocities<RigidMotion>(const MetaballField&, const MeshAdjacency&,
+template CouplingReport coupled_velocities<RigidMotion>(const ImplicitField&, const MeshAdjacency&,
                                                         const std::vector<Vec3>&, const CouplingWeights&,
                                                         const SolverLimits&, std::vector<Vec3>&);
-template CouplingReport coupled_velocities<AffineMotion>(const MetaballField&, const MeshAdjacency&,
+template CouplingReport coupled_velocities<AffineMotion>(const ImplicitField&, const MeshAdjacency&,
                                                          const std::vector<Vec3>&, const CouplingWeights&,
                                                          const SolverLimits&, std::vector<Vec3>&);
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/implicit_field.h"
 #include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/motion_rows.h"
 
@@ -34,14 +34,14 @@ struct CouplingReport {
 /// motion of each component that fits its field best. Takes time linear in the vertices. Nothing is remembered from
 /// call to call: the result depends on the arguments alone.
 template <class Motion>
-CouplingReport coupled_velocities(const MetaballField& field, const MeshAdjacency& topology,
+CouplingReport coupled_velocities(const ImplicitField& field, const MeshAdjacency& topology,
                                   const std::vector<Vec3>& positions, const CouplingWeights& weights,
                                   const SolverLimits& limits, std::vector<Vec3>& velocities);
 
-extern template CouplingReport coupled_velocities<RigidMotion>(const MetaballField&, const MeshAdjacency&,
+extern template CouplingReport coupled_velocities<RigidMotion>(const ImplicitField&, const MeshAdjacency&,
                                                                const std::vector<Vec3>&, const CouplingWeights&,
                                                                const SolverLimits&, std::vector<Vec3>&);
-extern template CouplingReport coupled_velocities<AffineMotion>(const MetaballField&, const MeshAdjacency&,
+extern template CouplingReport coupled_velocities<AffineMotion>(const ImplicitField&, const MeshAdjacency&,
                                                                 const std::vector<Vec3>&, const CouplingWeights&,
                                                                 const SolverLimits&, std::vector<Vec3>&);
 

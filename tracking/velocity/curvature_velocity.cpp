@@ -59,7 +59,7 @@ Mat3 spun(const Vec3& w, const Mat3& s) {
 /// Share of the change of gradient and Hessian at a point moving with v that no spin explains: 0 for every rigid
 /// motion.
 double unexplained_by_spin(const SurfacePoint& point, const Vec3& v) {
-  const Jet& jet = point.jet;
+  const MotionJet& jet = point.jet;
   const Vec3 gradient_carried = jet.hessian * v;
   const Mat3 hessian_carried = point.hessian_along(v);
   const Vec3 gradient_change = jet.gradient_rate + gradient_carried;

@@ -45,11 +45,12 @@ LocalFlow with_significant_strain(LocalFlow flow) {
 
 /// Least squares of the field's ten rows and of the distance to the particles' flow.
 Vec3 hybrid_velocity(const LocalField& field, const Vec3& x) {
-  const double radius = field.settings().radius;
-  const LocalFlow flow = with_significant_strain(local_flow(field, x));
-  const SurfacePoint point(field.jet(x), field.settings());
+  const LocalParticles& particles = *field.particles();
+  const double radius = particles.all().radius();
+  const LocalFlow flow = with_significant_strain(local_flow(particles, x));
+  const SurfacePoint point(field.motion_jet(x), field.scale());
   if (!point.defined || !flow.defined) return flow.velocity;
-  const auto rows = affine_rows(point, field.moments(x), row_weights);
+  const auto rows = affine_rows(point, particles.moments(x), row_weights);
   const double weight = flow_weight / expected_misfit2(flow);
   // In the change of the particles' flow: exact where the field agrees with it.
   const Motion start = motion_of(flow, radius);
@@ -62,7 +63,7 @@ Vec3 hybrid_velocity(const LocalField& field, const Vec3& x) {
 
 class HybridVelocity final : public VelocityMethod {
  public:
-  void evaluate(const MetaballField& field, const MeshAdjacency& /*topology*/, const std::vector<Vec3>& positions,
+  void evaluate(const ImplicitField& field, const MeshAdjacency& /*topology*/, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
     require_particle_velocities(field, "hybrid");
     velocities.resize(positions.size());

@@ -18,7 +18,7 @@ HessianRows flat(const Mat3& s) {
 // The rows of all motions, but for the columns of their gradients.
 template <class Rows>
 void set_velocity_rows(const SurfacePoint& point, const RowWeights& weights, Rows& rows) {
-  const Jet& jet = point.jet;
+  const MotionJet& jet = point.jet;
   const double value = weights.value / point.slope;
   const double first = weights.gradient / point.slope;
   const double second = weights.hessian / point.slope;
@@ -65,6 +65,21 @@ MotionRows<AffineMotion> affine_rows(const SurfacePoint& point, const KernelMome
   return rows;
 }
 
+MotionRows<AffineMotion> carried_affine_rows(const SurfacePoint& point, const RowWeights& weights) {
+  MotionRows<AffineMotion> rows;
+  set_velocity_rows(point, weights, rows);
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) {
+      Mat3 a = Mat3::Zero();
+      a(row, column) = 1;
+      const Mat3 half = point.jet.hessian * a;
+      set_gradient_column(point, weights, row + 3 * column,
+                          {0, -a.transpose() * point.jet.gradient, -(half + half.transpose())}, rows);
+    }
+  }
+  return rows;
+}
+
 MotionRows<RigidMotion> field_rows(const LocalField& /*field*/, const Vec3& /*x*/, const SurfacePoint& point,
                                    const RowWeights& weights, RigidMotion /*motion*/) {
   return rigid_rows(point, weights);
@@ -72,7 +87,8 @@ MotionRows<RigidMotion> field_rows(const LocalField& /*field*/, const Vec3& /*x*
 
 MotionRows<AffineMotion> field_rows(const LocalField& field, const Vec3& x, const SurfacePoint& point,
                                     const RowWeights& weights, AffineMotion /*motion*/) {
-  return affine_rows(point, field.moments(x), weights);
+  const LocalParticles* particles = field.particles();
+  return particles ? affine_rows(point, particles->moments(x), weights) : carried_affine_rows(point, weights);
 }
 
 }  // namespace flowskin::tracking

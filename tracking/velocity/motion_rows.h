@@ -6,6 +6,7 @@
 
 #include "tracking/field/kernel_moments.h"
 #include "tracking/field/neighborhoods.h"
+#include "tracking/field/particle_field.h"
 #include "tracking/velocity/surface_point.h"
 
 namespace flowskin::tracking {
@@ -76,7 +77,11 @@ MotionRows<RigidMotion> rigid_rows(const SurfacePoint& point, const RowWeights& 
 MotionRows<AffineMotion> affine_rows(const SurfacePoint& point, const KernelMoments& moments,
                                      const RowWeights& weights);
 
-/// Either of them for the point x (m) of the field.
+/// Exact for every affine motion that carries the field along as a whole, f(x + v dt + A (x - x0) dt) = f(x): what is
+/// to be known where there are no particles. D f = 0, D grad f = -A^T grad f, D Hess f = -(A^T Hess f + Hess f A).
+MotionRows<AffineMotion> carried_affine_rows(const SurfacePoint& point, const RowWeights& weights);
+
+/// Either of them for the point x (m) of the field; affine ones by its particles, where it has some.
 MotionRows<RigidMotion> field_rows(const LocalField& field, const Vec3& x, const SurfacePoint& point,
                                    const RowWeights& weights, RigidMotion motion);
 MotionRows<AffineMotion> field_rows(const LocalField& field, const Vec3& x, const SurfacePoint& point,

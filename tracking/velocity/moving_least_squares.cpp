@@ -29,10 +29,10 @@ std::vector<int>& scratch() {
   return found;
 }
 
-std::vector<Sample>& samples_of(const std::vector<int>& found, const MetaballField& field, const Vec3& x) {
+std::vector<Sample>& samples_of(const std::vector<int>& found, const ParticleField& field, const Vec3& x) {
   thread_local std::vector<Sample> samples;
   samples.clear();
-  const double radius = field.settings().radius;
+  const double radius = field.radius();
   for (const int i : found) {
     const Vec3 offset = (field.positions()[i] - x) / radius;
     const double u = std::max(0.0, 1 - offset.squaredNorm());
@@ -55,7 +55,7 @@ Mat3 damped_inverse(const Mat3& covariance) {
 }
 
 /// The flow that fits these particles best.
-LocalFlow flow_of(const std::vector<int>& found, const MetaballField& field, const Vec3& x) {
+LocalFlow flow_of(const std::vector<int>& found, const ParticleField& field, const Vec3& x) {
   LocalFlow flow;
   std::vector<Sample>& samples = samples_of(found, field, x);
   flow.neighbors = static_cast<int>(samples.size());
@@ -88,8 +88,8 @@ LocalFlow flow_of(const std::vector<int>& found, const MetaballField& field, con
   const Mat3 known = products * inverse;      // per radius
   const Mat3 gradient = known - spanned * known.transpose() * (Mat3::Identity() - spanned);
   flow.velocity = mean - gradient * center;
-  flow.gradient = gradient / field.settings().radius;
-  flow.center = center * field.settings().radius;
+  flow.gradient = gradient / field.radius();
+  flow.center = center * field.radius();
 
   double rest = 0, spread = 0, all = 0, weights2 = 0;
   for (const Sample& sample : samples) {
@@ -100,8 +100,7 @@ LocalFlow flow_of(const std::vector<int>& found, const MetaballField& field, con
   }
   // Of n samples with independent errors, n - 4 are left to show them.
   const double freedom = 1.0 / std::max(1, flow.neighbors - affine_unknowns) * flow.neighbors;
-  flow.gradient_error2 =
-      freedom * rest * weights2 * inverse.trace() / (field.settings().radius * field.settings().radius);
+  flow.gradient_error2 = freedom * rest * weights2 * inverse.trace() / (field.radius() * field.radius());
   // Velocities that differ by rounding alone have no spread.
   if (spread > least_spread_of_speed * all) flow.misfit = std::min(1.0, std::sqrt(rest / spread));
   return flow;
@@ -109,14 +108,14 @@ LocalFlow flow_of(const std::vector<int>& found, const MetaballField& field, con
 
 }  // namespace
 
-LocalFlow local_flow(const MetaballField& field, const Vec3& x) {
-  field.neighbors(x, field.settings().radius, scratch());
+LocalFlow local_flow(const ParticleField& field, const Vec3& x) {
+  field.neighbors(x, field.radius(), scratch());
   return flow_of(scratch(), field, x);
 }
 
-LocalFlow local_flow(const LocalField& field, const Vec3& x) {
+LocalFlow local_flow(const LocalParticles& field, const Vec3& x) {
   field.neighbors(x, scratch());
-  return flow_of(scratch(), field.field(), x);
+  return flow_of(scratch(), field.all(), x);
 }
 
 }  // namespace flowskin::tracking

@@ -1,8 +1,7 @@
 // The flow of the particles around a point, by moving least squares of their velocities.
 #pragma once
 
-#include "tracking/field/metaball_field.h"
-#include "tracking/field/neighborhoods.h"
+#include "tracking/field/particle_field.h"
 
 namespace flowskin::tracking {
 
@@ -25,7 +24,7 @@ struct LocalFlow {
 /// Eigenvalues of their covariance below 1e-3 squared radii (a spread of 3 % of the radius) fade out. The misfit of
 /// four particles or fewer says little, as a linear flow fits them in most cases. Never NaN; a field without velocities
 /// is at rest.
-LocalFlow local_flow(const MetaballField& field, const Vec3& x);
-LocalFlow local_flow(const LocalField& field, const Vec3& x);
+LocalFlow local_flow(const ParticleField& field, const Vec3& x);
+LocalFlow local_flow(const LocalParticles& field, const Vec3& x);
 
 }  // namespace flowskin::tracking

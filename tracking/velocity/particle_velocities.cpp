@@ -2,10 +2,13 @@
 
 #include <stdexcept>
 
+#include "tracking/field/particle_field.h"
+
 namespace flowskin::tracking {
 
-void require_particle_velocities(const MetaballField& field, const std::string& method) {
-  if (field.positions().empty() || !field.velocities().empty()) return;
+void require_particle_velocities(const ImplicitField& field, const std::string& method) {
+  const ParticleField& particles = particles_of(field, "the velocity method \"" + method + "\"");
+  if (particles.positions().empty() || !particles.velocities().empty()) return;
   throw std::invalid_argument("the velocity method \"" + method +
                               "\" needs particles with velocities; use \"affine\" for particles without");
 }

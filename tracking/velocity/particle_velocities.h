@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/implicit_field.h"
 
 namespace flowskin::tracking {
 
 /// @throws std::invalid_argument where the field has particles but no velocities.
-void require_particle_velocities(const MetaballField& field, const std::string& method);
+void require_particle_velocities(const ImplicitField& field, const std::string& method);
 
 }  // namespace flowskin::tracking

@@ -9,7 +9,7 @@ namespace flowskin::tracking {
 /// Evaluates the jet at every vertex, in parallel, and leaves the rest to `velocity`.
 class PointwiseVelocity : public VelocityMethod {
  public:
-  void evaluate(const MetaballField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
+  void evaluate(const ImplicitField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const final;
   /// Velocity in effective radii per second; only called where the point is defined.
   virtual Vec3 velocity(const SurfacePoint& point) const = 0;

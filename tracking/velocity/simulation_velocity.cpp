@@ -10,14 +10,14 @@ namespace {
 
 class SimulationVelocity final : public VelocityMethod {
  public:
-  void evaluate(const MetaballField& field, const MeshAdjacency& /*topology*/, const std::vector<Vec3>& positions,
+  void evaluate(const ImplicitField& field, const MeshAdjacency& /*topology*/, const std::vector<Vec3>& positions,
                 std::vector<Vec3>& velocities) const override {
     require_particle_velocities(field, "simulation");
     velocities.resize(positions.size());
     Neighborhoods(field, positions).for_each([&](int i, const LocalField& local) {
-      const SurfacePoint point(local.jet(positions[i]), field.settings());
-      const Vec3 v = local_flow(local, positions[i]).velocity;
-      velocities[i] = point.defined ? meeting_surface(point, v, field.settings().radius) : Vec3(Vec3::Zero());
+      const SurfacePoint point(local.motion_jet(positions[i]), field.scale());
+      const Vec3 v = local_flow(*local.particles(), positions[i]).velocity;
+      velocities[i] = point.defined ? meeting_surface(point, v, field.scale().length) : Vec3(Vec3::Zero());
     });
   }
 

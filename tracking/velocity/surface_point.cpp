@@ -5,18 +5,18 @@
 namespace flowskin::tracking {
 namespace {
 
-/// Below this share of weight / radius a gradient is rounding: the field does not say where its surface goes.
+/// Below this share of the scale a gradient is rounding: the field does not say where its surface goes.
 constexpr double least_slope = 1e-9;
 /// Near critical points of f the normal velocity f_t / |grad f| is without bound; slopes of this size damp it.
 constexpr double damping_slope = 1e-6;
 
-Jet without_units(const Jet& jet, const FieldSettings& settings) {
-  const double per_weight = 1 / settings.weight;
-  const double first = per_weight * settings.radius;
-  const double second = first * settings.radius;
-  const double third = second * settings.radius;
-  Jet scaled;
-  scaled.value = jet.value * per_weight;
+MotionJet without_units(const MotionJet& jet, const FieldScale& scale) {
+  const double per_weight = 1 / scale.value;
+  const double first = per_weight * scale.length;
+  const double second = first * scale.length;
+  const double third = second * scale.length;
+  MotionJet scaled;
+  scaled.moving_value = jet.moving_value * per_weight;
   scaled.gradient = jet.gradient * first;
   scaled.hessian = jet.hessian * second;
   for (int k = 0; k < 3; ++k) scaled.third[k] = jet.third[k] * third;
@@ -40,8 +40,8 @@ Mat32 tangents_of(const Vec3& n) {
 
 }  // namespace
 
-SurfacePoint::SurfacePoint(const Jet& jet_with_units, const FieldSettings& settings)
-    : jet(without_units(jet_with_units, settings)) {
+SurfacePoint::SurfacePoint(const MotionJet& jet_with_units, const FieldScale& scale)
+    : jet(without_units(jet_with_units, scale)) {
   slope = jet.gradient.norm();
   defined = slope > least_slope;
   if (!defined) return;

@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "tracking/field/implicit_field.h"
 #include "tracking/field/jet.h"
-#include "tracking/field/metaball_field.h"
 
 namespace flowskin::tracking {
 
@@ -12,12 +12,13 @@ using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 using Mat32 = Eigen::Matrix<double, 3, 2>;
 
-/// The jet with lengths in effective radii and f in kernel weights. Whatever a method weighs or damps in these
-/// quantities is the same in all units and at all sizes of a scene; only time keeps its unit (s).
+/// The jet in the units of the field's scale: for particles, lengths in effective radii and f in kernel weights.
+/// Whatever a method weighs or damps in these quantities is the same in all units and at all sizes of a scene; only
+/// time keeps its unit (s).
 struct SurfacePoint {
-  SurfacePoint(const Jet& jet, const FieldSettings& settings);
+  SurfacePoint(const MotionJet& jet, const FieldScale& scale);
 
-  Jet jet;
+  MotionJet jet;
   bool defined;          ///< The gradient is not zero; otherwise nothing below has a meaning.
   double slope = 0;      ///< |grad f|
   Vec3 normal;           ///< n = grad f / |grad f|; points into the fluid.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/implicit_field.h"
 #include "tracking/mesh/adjacency.h"
 
 namespace flowskin::tracking {
@@ -16,7 +16,7 @@ class VelocityMethod {
   virtual ~VelocityMethod() = default;
   /// `positions` are the vertices at the time of `field` (m); `velocities` gets one entry per vertex. Never NaN: where
   /// nothing is known, zero. An empty `topology` means vertices without neighbours.
-  virtual void evaluate(const MetaballField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
+  virtual void evaluate(const ImplicitField& field, const MeshAdjacency& topology, const std::vector<Vec3>& positions,
                         std::vector<Vec3>& velocities) const = 0;
 };
 
@@ -25,7 +25,8 @@ struct VelocityMethodInfo {
   std::string name;
   std::string summary;  ///< One sentence: what it assumes and when to use it.
   std::unique_ptr<VelocityMethod> (*create)();
-  bool needs_particle_velocities = false;  ///< The field alone is not enough (MetaballField::velocities is empty).
+  bool needs_particle_velocities =
+      false;  ///< The field alone is not enough: it must be one of particles that have some.
 };
 
 /// All methods, in the order of presentation.

@@ -1,9 +1,9 @@
-#include "tracking/field/group_sums.h"
+#include "tracking/field/metaballs/group_sums.h"
 
 #include <array>
 #include <cstddef>
 
-#include "tracking/field/metaball_sums.h"
+#include "tracking/field/metaballs/metaball_sums.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -61,7 +61,7 @@ double kernel_sum(const NearGroups& near, const Vec3& x, Vec3& gradient_sum) {
   return lane_sum(sum);
 }
 
-Jet jet_of(const NearGroups& near, const Vec3& x, const FieldSettings& settings) {
+MotionJet jet_of(const NearGroups& near, const Vec3& x, const FieldSettings& settings) {
   constexpr int capacity = 32;
   std::array<NeighborLanes, capacity> lanes;
   const bool moving = near.blocks.moving();
@@ -91,7 +91,7 @@ Jet jet_of(const NearGroups& near, const Vec3& x, const FieldSettings& settings)
         count += static_cast<int>(any_lane(inside));  // without a branch, which could not be foretold
       });
   sums.add(lanes.data(), count, moving);
-  Jet jet = sums.jet(settings);
+  MotionJet jet = sums.jet(settings);
   jet.neighbors = static_cast<int>(neighbors[0] + neighbors[1] + neighbors[2] + neighbors[3]);
   return jet;
 }

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "tracking/field/group_sums.h"
-#include "tracking/field/metaball_field.h"
-#include "tracking/field/particle_blocks.h"
+#include "tracking/field/metaballs/group_sums.h"
+#include "tracking/field/metaballs/metaball_field.h"
+#include "tracking/field/metaballs/particle_blocks.h"
 
 namespace flowskin::tracking {
 
@@ -48,17 +48,17 @@ struct MetaballField::Impl {
   }
 
   template <class Groups>
-  Jet jet(const Vec3& x, const Groups& groups) const {
+  MotionJet jet(const Vec3& x, const Groups& groups) const {
     if (shares.empty() && particle_parts == 1 && parts.front().share_rate == 0)
       return jet_of(near(0, groups), x, settings);
     FieldSettings without_threshold = settings;
     without_threshold.threshold = 0;
-    Jet sum;
+    MotionJet sum;
     for (std::size_t k = 0; k < particle_parts; ++k) {
       if (parts[k].share > 0 || parts[k].share_rate != 0)
         add_share(jet_of(near(k, groups), x, without_threshold), parts[k], sum);
     }
-    sum.value -= settings.threshold;
+    sum.moving_value -= settings.threshold;
     return sum;
   }
 
@@ -102,7 +102,7 @@ struct MetaballField::Impl {
     return {*parts[part].blocks, groups(part), settings.radius, per_square};
   }
   /// Adds a part's jet with its share; its value is without the threshold.
-  static void add_share(const Jet& jet, const Part& part, Jet& sum);
+  static void add_share(const MotionJet& jet, const Part& part, MotionJet& sum);
 
   FieldSettings settings;
   double per_square;  // 1 / radius^2

@@ -1,4 +1,4 @@
-#include "tracking/field/particle_blocks.h"
+#include "tracking/field/metaballs/particle_blocks.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tracking/field/lanes.h"
+#include "tracking/field/metaballs/lanes.h"
 #include "tracking/particles.h"
 
 namespace flowskin::tracking {

@@ -1,4 +1,4 @@
-#include "tracking/field/metaball_sums.h"
+#include "tracking/field/metaballs/metaball_sums.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -155,13 +155,13 @@ void MetaballSums::add(const NeighborLanes* lanes, int count, bool moving) {
   add_hessian_rate(lanes, count);
 }
 
-Jet MetaballSums::jet(const FieldSettings& settings) const {
+MotionJet MetaballSums::jet(const FieldSettings& settings) const {
   const double w = settings.weight;
   const double first = w / settings.radius;  // d/dx = (1 / sigma) d/de
   const double second = first / settings.radius;
   const double third = second / settings.radius;
-  Jet jet;
-  jet.value = w * u3_ - settings.threshold;
+  MotionJet jet;
+  jet.moving_value = w * u3_ - settings.threshold;
   jet.gradient = -6 * first * vector(u2_e_);
   jet.hessian = 24 * second * symmetric(u_ee_);
   jet.hessian.diagonal().array() -= 6 * second * u2_;

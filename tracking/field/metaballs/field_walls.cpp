@@ -1,4 +1,4 @@
-#include "tracking/field/field_walls.h"
+#include "tracking/field/metaballs/field_walls.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "tracking/field/metaball_field.h"
-#include "tracking/field/particle_blocks.h"
+#include "tracking/field/metaballs/metaball_field.h"
+#include "tracking/field/metaballs/particle_blocks.h"
 
 namespace flowskin::tracking {
 namespace {

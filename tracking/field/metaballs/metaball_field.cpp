@@ -1,4 +1,4 @@
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/metaballs/metaball_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "tracking/field/field_parts.h"
+#include "tracking/field/metaballs/field_parts.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -92,13 +92,13 @@ MetaballField::Impl::Impl(std::vector<FieldPart> given, const FieldSettings& fie
   for (const auto& wall : walls) parts.push_back({wall->blocks(), wall->share(), 0, 0});
 }
 
-void MetaballField::Impl::add_share(const Jet& jet, const Part& part, Jet& sum) {
+void MetaballField::Impl::add_share(const MotionJet& jet, const Part& part, MotionJet& sum) {
   const double share = part.share, share_rate = part.share_rate;
-  sum.value += share * jet.value;
+  sum.moving_value += share * jet.moving_value;
   sum.gradient += share * jet.gradient;
   sum.hessian += share * jet.hessian;
   for (int axis = 0; axis < 3; ++axis) sum.third[axis] += share * jet.third[axis];
-  sum.value_rate += share * jet.value_rate + share_rate * jet.value;
+  sum.value_rate += share * jet.value_rate + share_rate * jet.moving_value;
   sum.gradient_rate += share * jet.gradient_rate + share_rate * jet.gradient;
   sum.hessian_rate += share * jet.hessian_rate + share_rate * jet.hessian;
   sum.neighbors += jet.neighbors;
@@ -116,7 +116,7 @@ double MetaballField::value(const Vec3& x) const { return impl_->value(x, impl_-
 double MetaballField::value(const Vec3& x, Vec3& gradient) const {
   return impl_->value(x, gradient, impl_->looked_up(x));
 }
-Jet MetaballField::jet(const Vec3& x) const { return impl_->jet(x, impl_->looked_up(x)); }
+MotionJet MetaballField::motion_jet(const Vec3& x) const { return impl_->jet(x, impl_->looked_up(x)); }
 KernelMoments MetaballField::moments(const Vec3& x) const { return impl_->moments(x, impl_->looked_up(x)); }
 
 const FieldSettings& MetaballField::settings() const { return impl_->settings; }
@@ -125,11 +125,11 @@ const std::vector<Vec3>& MetaballField::velocities() const { return impl_->veloc
 const std::vector<double>& MetaballField::shares() const { return impl_->shares; }
 const FieldWalls& MetaballField::walls() const { return impl_->walls; }
 
-void MetaballField::neighbors(const Vec3& x, double radius, std::vector<int>& found) const {
+void MetaballField::neighbors(const Vec3& x, double reach, std::vector<int>& found) const {
   found.clear();
-  if (!(radius > 0)) return;
-  impl_->neighbors(x, radius, found,
-                   [&](std::size_t part) { return impl_->parts[part].blocks->near(x, radius, Impl::scratch()); });
+  if (!(reach > 0)) return;
+  impl_->neighbors(x, reach, found,
+                   [&](std::size_t part) { return impl_->parts[part].blocks->near(x, reach, Impl::scratch()); });
 }
 
 }  // namespace flowskin::tracking

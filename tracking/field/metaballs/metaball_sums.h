@@ -4,8 +4,8 @@
 #include <array>
 
 #include "tracking/field/jet.h"
-#include "tracking/field/lanes.h"
-#include "tracking/field/metaball_field.h"
+#include "tracking/field/metaballs/lanes.h"
+#include "tracking/field/metaballs/metaball_field.h"
 
 namespace flowskin::tracking {
 
@@ -26,7 +26,7 @@ class MetaballSums {
   /// Lanes that hold no neighbour must be zero throughout.
   void add(const NeighborLanes* lanes, int count, bool moving);
   /// The jet, in units, of the field that these settings make of the neighbours.
-  Jet jet(const FieldSettings& settings) const;
+  MotionJet jet(const FieldSettings& settings) const;
 
  private:
   void add_value_gradient_hessian(const NeighborLanes* lanes, int count);

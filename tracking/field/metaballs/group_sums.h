@@ -3,8 +3,8 @@
 
 #include "tracking/field/jet.h"
 #include "tracking/field/kernel_moments.h"
-#include "tracking/field/metaball_field.h"
-#include "tracking/field/particle_blocks.h"
+#include "tracking/field/metaballs/metaball_field.h"
+#include "tracking/field/metaballs/particle_blocks.h"
 
 namespace flowskin::tracking {
 
@@ -22,7 +22,7 @@ double kernel_sum(const NearGroups& near, const Vec3& x);
 /// The same; `gradient_sum` is the sum of u^2 (x - x_i) (m), of which the gradient is made.
 double kernel_sum(const NearGroups& near, const Vec3& x, Vec3& gradient_sum);
 /// The jet that these settings make of the part.
-Jet jet_of(const NearGroups& near, const Vec3& x, const FieldSettings& settings);
+MotionJet jet_of(const NearGroups& near, const Vec3& x, const FieldSettings& settings);
 /// Adds the moments of the part times `share`.
 void add_moments(const NearGroups& near, const Vec3& x, double share, KernelMoments& moments);
 
