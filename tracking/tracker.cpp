@@ -217,7 +217,8 @@ class TrackerImpl {
 
   // Makes the raw surface the tracked mesh; it takes its material from the old mesh and the particles.
   Projection adopt(const SurfaceGeometry& raw) {
-    const SurfaceGeometry geometry = improve_surface(*field_, settings_.edge_length, raw);
+    SurfaceGeometry geometry = improve_surface(*field_, settings_.edge_length, raw);
+    if (settings_.remeshing) geometry = settled(*field_, remesh_settings(), std::move(geometry));
     std::vector<Vec3> positions = geometry.positions;
     Projection projection = project_to_surface(*field_, default_projection(scale_), positions);
     mesh_ = carry_material(mesh_, geometry, projection.normals, *field_, particles_, material_settings());
@@ -326,13 +327,18 @@ class TrackerImpl {
     rest_lengths_ = carry_rest_lengths(old_ids, old_topology, rest_lengths_, mesh_, topology_, settings_.edge_length);
   }
 
-  // Brings edges near their target length.
-  void remesh_surface() {
-    const std::vector<std::uint64_t> old_ids = mesh_.ids;
+  RemeshSettings remesh_settings() const {
     RemeshSettings limits;
     limits.edge_length = settings_.edge_length;
     limits.curvature = settings_.curvature_edges;
     limits.torn = kTorn;
+    return limits;
+  }
+
+  // Brings edges near their target length.
+  void remesh_surface() {
+    const std::vector<std::uint64_t> old_ids = mesh_.ids;
+    const RemeshSettings limits = remesh_settings();
     const auto few = static_cast<int>(mesh_.positions.size()) / kFewIn;
     for (int pass = 0; pass < kRemeshingPasses; ++pass) {
       const RemeshReport done = remesh(*field_, limits, mesh_);

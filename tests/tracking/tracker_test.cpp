@@ -54,6 +54,23 @@ double root_mean_square_error(const SurfaceMesh& mesh, const Vec3& spin, const V
   return std::sqrt(sum / static_cast<double>(mesh.positions.size()));
 }
 
+// The first mesh is one that remeshing leaves alone: fluid at rest keeps its vertices.
+TEST(Tracker, FirstMeshIsAFixedPointOfRemeshing) {
+  std::vector<Vec3> pool;
+  for (const Vec3& x : test::lattice(1.0, 12, 0.2, 7, [](const Vec3& p) { return std::abs(p.y()) <= 4; }))
+    pool.push_back(x);
+  for (const std::vector<Vec3>& body : {pool, ellipsoid()}) {
+    const Particles before = particles_at(body);
+    Tracker tracker(settings_for("affine"), before);
+    const std::vector<std::uint64_t> first = tracker.mesh().ids;
+    Particles after = before;
+    after.time = 1.0 / 30;
+    tracker.advance(after);
+    const auto count = static_cast<double>(tracker.mesh().ids.size());
+    EXPECT_NEAR(count, static_cast<double>(first.size()), 0.02 * static_cast<double>(first.size()));
+  }
+}
+
 TEST(Tracker, FirstMeshIsAtRest) {
   const Tracker tracker(settings_for("curvature"), particles_at(ball_of_particles(4.2)));
   expect_written_well(tracker);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
+#include "tracking/fairing/relaxation.h"
 #include "tracking/mesh/edges_by_length.h"
 #include "tracking/mesh/editable_mesh.h"
 #include "tracking/mesh/keep_vertices.h"
@@ -15,6 +17,10 @@ namespace flowskin::tracking {
 namespace {
 
 using Edge = std::array<int, 2>;
+
+constexpr int kSettlingPasses = 6;
+constexpr int kSettlingRelaxations = 3;
+constexpr int kFewInSettled = 200;  // one operation in so many vertices is left to the first frame
 
 MeshAdjacency topology_of(const SurfaceMesh& mesh) {
   return build_adjacency(static_cast<int>(mesh.positions.size()), mesh.triangles);
@@ -214,6 +220,27 @@ RemeshReport remesh(const ImplicitField& field, const RemeshSettings& settings, 
     project_to_surface(field, default_projection(field.scale()), points);
   };
   return remesh(put_on_surface, settings, mesh, sizes_by_curvature(field, settings, mesh.positions));
+}
+
+SurfaceGeometry settled(const ImplicitField& field, const RemeshSettings& settings, SurfaceGeometry surface) {
+  SurfaceMesh mesh;
+  mesh.positions = std::move(surface.positions);
+  mesh.triangles = std::move(surface.triangles);
+  mesh.rest_positions = mesh.positions;
+  mesh.velocities.assign(mesh.positions.size(), Vec3::Zero());
+  mesh.next_id = mesh.positions.size();
+  mesh.ids.resize(mesh.positions.size());
+  std::iota(mesh.ids.begin(), mesh.ids.end(), std::uint64_t{0});
+  const ProjectionSettings projection = default_projection(field.scale());
+  for (int pass = 0; pass < kSettlingPasses; ++pass) {
+    const RemeshReport done = remesh(field, settings, mesh);
+    const int few = static_cast<int>(mesh.positions.size()) / kFewInSettled;
+    if (done.splits + done.collapses + done.flips <= few) break;
+    std::vector<Vec3> normals = project_to_surface(field, projection, mesh.positions).normals;
+    relax(field, projection, topology_of(mesh), mesh.triangles, kSettlingRelaxations, {}, mesh.positions, normals,
+          Ridges::kept);
+  }
+  return {std::move(mesh.positions), std::move(mesh.triangles)};
 }
 
 std::vector<double> sizes_by_curvature(const ImplicitField& field, const RemeshSettings& settings,

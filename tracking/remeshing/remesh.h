@@ -6,6 +6,7 @@
 
 #include "tracking/advection/projection.h"
 #include "tracking/field/implicit_field.h"
+#include "tracking/extraction/marching_cubes.h"
 #include "tracking/mesh/adjacency.h"
 #include "tracking/mesh/surface_mesh.h"
 
@@ -40,6 +41,10 @@ RemeshReport remesh(const ImplicitField& field, const RemeshSettings& settings, 
 /// @param sizes the target at each vertex, in edge lengths; an edge takes the smaller one of its ends. Empty: 1.
 RemeshReport remesh(const std::function<void(std::vector<Vec3>&)>& put_on_surface, const RemeshSettings& settings,
                     SurfaceMesh& mesh, std::vector<double> sizes = {});
+
+/// A surface that remeshing leaves alone: passes on a fresh one until few operations are left, with the edges evened
+/// out between them. A mesh that is tracked from there on keeps its vertices in the first frame.
+SurfaceGeometry settled(const MetaballField& field, const RemeshSettings& settings, SurfaceGeometry surface);
 
 /// Targets by curvature at points on the surface, in edge lengths: `curvature` times the smaller radius of curvature,
 /// held between `finest` and 1.
