@@ -1,6 +1,6 @@
 // Neighbour lists against brute force.
-#include "common/hilbert.h"
 #include "sph/neighbors/neighbor_lists.h"
+#include "common/hilbert.h"
 
 #include <gtest/gtest.h>
 

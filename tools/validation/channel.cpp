@@ -12,13 +12,15 @@ namespace {
 
 using sph::Vec3;
 
-constexpr double kChannelWidth = 1e-3, kChannelViscosity = 1e-6, kChannelSpeed = 1.25e-5;  // m, m^2/s, m/s, all as in [MFZ97]
-constexpr double kChannelTimes[] = {0.0225, 0.045, 0.1125, 1.0};                // L^2 / nu
+constexpr double kChannelWidth = 1e-3, kChannelViscosity = 1e-6,
+                 kChannelSpeed = 1.25e-5;                         // m, m^2/s, m/s, all as in [MFZ97]
+constexpr double kChannelTimes[] = {0.0225, 0.045, 0.1125, 1.0};  // L^2 / nu
 
 sph::SimulationSetup channel(const ChannelFlow& flow, int across) {
   const double spacing = kChannelWidth / across, length = 6 * spacing;
   sph::SimulationSetup setup =
-      flow_setup(spacing, kChannelViscosity, {flow.force * kChannelViscosity * kChannelSpeed / (kChannelWidth * kChannelWidth), 0, 0});
+      flow_setup(spacing, kChannelViscosity,
+                 {flow.force * kChannelViscosity * kChannelSpeed / (kChannelWidth * kChannelWidth), 0, 0});
   setup.settings.max_speed = kChannelSpeed;
   // Steps of the explicit scheme, so that the error is that of space alone.
   setup.settings.viscosity_solver = sph::ViscositySolver::explicit_steps;
@@ -76,8 +78,9 @@ ValidationResult run_channel(const ChannelFlow& flow, double resolution) {
       for (std::size_t i = 0; i < p.y.size(); ++i)
         result.data.add({across, kChannelTimes[k], p.y[i], p.computed[i], p.reference[i]});
       if (count != counts[2]) continue;
-      result.figures.push_back(at_most(
-          fmt::format("relative L2 error of the speed; {} across; t = {} L^2/nu", across, kChannelTimes[k]), error, 0.02));
+      result.figures.push_back(
+          at_most(fmt::format("relative L2 error of the speed; {} across; t = {} L^2/nu", across, kChannelTimes[k]),
+                  error, 0.02));
       speeds.series.push_back({k == 0 ? "series" : "", p.y, p.reference, 0});
       speeds.series.push_back(
           {fmt::format("computed, t = {} L²/ν", kChannelTimes[k]), p.y, p.computed, static_cast<int>(k) + 1});

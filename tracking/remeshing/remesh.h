@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "tracking/advection/projection.h"
-#include "tracking/field/implicit_field.h"
 #include "tracking/extraction/marching_cubes.h"
+#include "tracking/field/implicit_field.h"
 #include "tracking/mesh/adjacency.h"
 #include "tracking/mesh/surface_mesh.h"
 
@@ -44,7 +44,7 @@ RemeshReport remesh(const std::function<void(std::vector<Vec3>&)>& put_on_surfac
 
 /// A surface that remeshing leaves alone: passes on a fresh one until few operations are left, with the edges evened
 /// out between them. A mesh that is tracked from there on keeps its vertices in the first frame.
-SurfaceGeometry settled(const MetaballField& field, const RemeshSettings& settings, SurfaceGeometry surface);
+SurfaceGeometry settled(const ImplicitField& field, const RemeshSettings& settings, SurfaceGeometry surface);
 
 /// Targets by curvature at points on the surface, in edge lengths: `curvature` times the smaller radius of curvature,
 /// held between `finest` and 1.
