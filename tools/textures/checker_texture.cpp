@@ -14,7 +14,7 @@ constexpr int kCells = 8;
 constexpr float kLabelHeight = 0.40F;  ///< in cells
 constexpr float kLabelGap = 0.16F;     ///< between the two characters, in cells
 constexpr float kPenRadius = 0.049F;   ///< in cells
-constexpr float kLineWidth = 0.014F;   ///< half the width of the grid's lines, in cells
+constexpr float kCheckerLineWidth = 0.014F;   ///< half the width of the grid's lines, in cells
 
 struct CellStyle {
   Vec3 fill, label;  ///< linear light
@@ -80,7 +80,7 @@ Image checker_texture(int size) {
       const Vec2f inside = place - Vec2f(static_cast<float>(column), static_cast<float>(row));
       const CellStyle& style = styles[row * kCells + column];
       const float edge = std::min({inside.x(), 1 - inside.x(), inside.y(), 1 - inside.y()});
-      const double on_line = coverage(edge, kLineWidth, pixel);
+      const double on_line = coverage(edge, kCheckerLineWidth, pixel);
       const double on_label = coverage(labels[row * kCells + column].distance(inside), kPenRadius, pixel);
       const Vec3 labelled = (1 - on_label) * style.fill + on_label * style.label;
       image.at(x, y) = encode_srgb((1 - on_line) * labelled + on_line * line);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kFacesWanted = 0.3;  // cosine between a triangle's normal and the one asked for
 constexpr double kAtVertex = 0.7;     // weight of a corner from which on it is moved
 constexpr double kAtEdge = 0.15;      // weight of a corner up to which its opposite side is split
-constexpr double kUpright = 0.3;      // cosine of the largest turn of a triangle when a corner moves
+constexpr double kUprightWhenMoved = 0.3;      // cosine of the largest turn of a triangle when a corner moves
 constexpr int kFlipsPerEdge = 40;
 
 // Twice the signed area of a triangle seen against the normal.
@@ -100,7 +100,7 @@ bool PatchMesh::move_to(int vertex, const Vec3& x) {
     std::array<Vec3, 3> corners{};
     for (int i = 0; i < 3; ++i) corners[i] = triangles_[t][i] == vertex ? x : positions_[triangles_[t][i]];
     const Vec3 after = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    if (!(after.dot(before) > kUpright * after.norm() * before.norm())) return false;
+    if (!(after.dot(before) > kUprightWhenMoved * after.norm() * before.norm())) return false;
   }
   positions_[vertex] = x;
   return true;

@@ -11,7 +11,7 @@ namespace flowskin::tracking {
 namespace {
 
 // Chosen by measurement, see docs/velocity_methods.md.
-constexpr RowWeights row_weights{1, 1, 1};
+constexpr RowWeights kHybridRowWeights{1, 1, 1};
 constexpr double flow_weight = 100;       // of the particles' flow, for a misfit of 1; it grows as 1 / misfit^2
 constexpr double least_misfit = 3e-5;     // squares of smaller misfits are rounding
 constexpr int flow_unknowns = 4;          // particles that a linear flow always fits
@@ -50,7 +50,7 @@ Vec3 hybrid_velocity(const LocalField& field, const Vec3& x) {
   const LocalFlow flow = with_significant_strain(local_flow(particles, x));
   const SurfacePoint point(field.motion_jet(x), field.scale());
   if (!point.defined || !flow.defined) return flow.velocity;
-  const auto rows = affine_rows(point, particles.moments(x), row_weights);
+  const auto rows = affine_rows(point, particles.moments(x), kHybridRowWeights);
   const double weight = flow_weight / expected_misfit2(flow);
   // In the change of the particles' flow: exact where the field agrees with it.
   const Motion start = motion_of(flow, radius);
