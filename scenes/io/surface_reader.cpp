@@ -14,12 +14,12 @@
 namespace flowskin::scenes {
 namespace {
 
-/// Coordinates of the triangles' corners. @throws InputError where there are not six finite numbers a triangle.
+/// Coordinates of the triangles' corners. @throws InputError where there are not six finite numbers per triangle.
 std::vector<std::array<Vec2f, 3>> read_corners(const PlyFile& ply, const std::string& list, const std::string& file) {
   const auto found = ply.face_lists.find(list);
   if (found == ply.face_lists.end() || found->second.size() != 6 * ply.triangles.size())
-    throw InputError(file + ": no list \"" + list + "\" of six numbers a triangle: a surface written by FlowSkin was " +
-                     "expected");
+    throw InputError(file + ": no list \"" + list +
+                     "\" of six numbers per triangle: a surface written by FlowSkin was expected");
   std::vector<std::array<Vec2f, 3>> corners(ply.triangles.size());
   for (std::size_t i = 0; i < found->second.size(); ++i) {
     corners[i / 6][i % 6 / 2][i % 2] = static_cast<float>(found->second[i]);

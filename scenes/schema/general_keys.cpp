@@ -8,7 +8,7 @@ void add_general_keys(KeyTable& table, Scene& scene) {
   table.text("description", scene.description, "What the scene shows.");
   table.natural("seed", scene.seed, "Seed of all random numbers.");
   table.integer("frames", scene.frames, 1, 1000000, "", "Frames after the first one, which is frame 0 at time 0.");
-  table.number("frame_rate", scene.frame_rate, above(0, 1e5), "1/s", "Frames a second.");
+  table.number("frame_rate", scene.frame_rate, above(0, 1e5), "1/s", "Frames per second.");
 }
 
 void add_output_keys(KeyTable& table, OutputSpec& output) {
@@ -18,7 +18,7 @@ void add_output_keys(KeyTable& table, OutputSpec& output) {
   table.boolean("output.particles", output.particles, "Write the particles.");
   table.boolean("output.video", output.video, "Make videos, where ffmpeg is installed.");
   table.integer("output.checkpoint_interval", output.checkpoint_interval, 0, 1000000, "frames",
-                "The state is saved so often, and when the run is interrupted, to go on with --resume; 0: never.");
+                "How often the state is saved, for --resume; also when the run is interrupted. 0: never.");
 }
 
 void add_scene_keys(KeyTable& table, Scene& scene) {

@@ -148,7 +148,7 @@ void read_object(const JsonNode& node, const KeyTable& table, const std::string&
   for (const Key& key : table.keys()) paths.push_back(key.path);
   report_unknown_keys(node, paths, "", path, problems);
 
-  bool selection_known = true;  // Where a selecting key is wrong, nobody knows which others apply.
+  bool selection_known = true;  // Where a selecting key is wrong, it is unknown which others apply.
   for (const Key& key : table.keys()) {
     if (!selection_known && !key.condition.empty()) continue;
     const JsonNode* value = find_path(node, key.path);

@@ -73,11 +73,10 @@ void add_recorded_keys(KeyTable& table, Scene& scene) {
               "Time between files; 0: the times in the files, else 1/30 s.")
       .only_for(recorded);
   table
-      .choice<Ids>(
-          "particles.recorded.ids", files.ids,
-          {{"automatic", Ids::automatic}, {"order", Ids::order}, {"none", Ids::none}},
-          "Who is who from file to file: automatic takes the ids in the files or, where there are none, their order "
-          "if it seems to last.")
+      .choice<Ids>("particles.recorded.ids", files.ids,
+                   {{"automatic", Ids::automatic}, {"order", Ids::order}, {"none", Ids::none}},
+                   "Which particle is which from file to file: automatic takes the ids in the files or, where there "
+                   "are none, their order if it seems to last.")
       .only_for(recorded);
 }
 

@@ -30,7 +30,7 @@ void add_render_keys(KeyTable& table, RenderSpec& render) {
                "Vertical field of view.");
   table.integer("render.width", render.width, 16, 16384, "pixels", "Width of the pictures.");
   table.integer("render.height", render.height, 16, 16384, "pixels", "Height of the pictures.");
-  table.integer("render.samples", render.samples, 1, 4096, "", "Rays a pixel.");
+  table.integer("render.samples", render.samples, 1, 4096, "", "Rays per pixel.");
   table.name("render.style", render.style, {"textured", "solid", "normals", "confidence"},
              "textured, solid (colour of the rest position) or normals.");
   table.boolean("render.ground", render.ground, "Whether a ground plane catches shadows.");

@@ -42,7 +42,7 @@ void add_tracking_keys(KeyTable& table, TrackingSpec& tracking) {
   table.choice<Integrator>("tracking.integrator", tracking.integrator, integrators(),
                            "Time integration of the vertices.");
   table.integer("tracking.steps_per_frame", tracking.steps_per_frame, 1, 10000, "",
-                "Particle states a frame, one step of the tracker each.");
+                "Particle states per frame, one step of the tracker each.");
   table.number("tracking.max_motion", tracking.max_motion, above(0, 10), "effective radii",
                "Farthest that a particle moves in a substep of the tracker.");
   table.number("tracking.radius", tracking.field.radius, at_least(0.5, 10), "spacings",

@@ -21,7 +21,7 @@ class ParticleField {
   virtual double radius() const = 0;
   /// m
   virtual const std::vector<Vec3>& positions() const = 0;
-  /// m/s, one a particle; empty where those of none are known.
+  /// m/s, one per particle; empty where those of none are known.
   virtual const std::vector<Vec3>& velocities() const = 0;
   /// Indices of the particles nearer than `reach` (m), ascending. Clears `found` first.
   virtual void neighbors(const Vec3& x, double reach, std::vector<int>& found) const = 0;

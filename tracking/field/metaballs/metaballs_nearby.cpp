@@ -1,5 +1,5 @@
 // Which particles matter to each of many points: points are cut into patches, a patch looks up the particles around it,
-// and its points choose among those. Costs about 200 bytes a point.
+// and its points choose among those. Costs about 200 bytes per point.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
