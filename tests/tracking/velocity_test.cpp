@@ -69,7 +69,7 @@ Body make_body(bool ball, double radius_in_spacings) {
     for (Vec3& particle : body.particles) particle += half;
   }
   body.settings = default_field_settings(spacing, radius_in_spacings);
-  const SurfaceGeometry surface = extract_surface({body.particles, {}, body.settings}, 0.7 * spacing);
+  const SurfaceGeometry surface = extract_surface(MetaballField(body.particles, {}, body.settings), 0.7 * spacing);
   body.surface = surface.positions;
   body.topology = build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles);
   return body;
@@ -92,7 +92,7 @@ std::vector<Vec3> evaluate(const std::string& method, const std::vector<Vec3>& p
                            const std::vector<Vec3>& velocities, const FieldSettings& settings,
                            const std::vector<Vec3>& points, const MeshAdjacency& topology = {}) {
   std::vector<Vec3> result;
-  make_velocity_method(method)->evaluate({particles, velocities, settings}, topology, points, result);
+  make_velocity_method(method)->evaluate(MetaballField(particles, velocities, settings), topology, points, result);
   return result;
 }
 
@@ -151,7 +151,7 @@ TEST(Velocity, RotationIsExactForRigidMotions) {
 /// The mesh of a few particles.
 Body small_body(const std::vector<Vec3>& particles) {
   Body body{particles, {1, 0.5, 1}, {}, {}};
-  const SurfaceGeometry surface = extract_surface({particles, {}, body.settings}, 0.15);
+  const SurfaceGeometry surface = extract_surface(MetaballField(particles, {}, body.settings), 0.15);
   body.surface = surface.positions;
   body.topology = build_adjacency(static_cast<int>(surface.positions.size()), surface.triangles);
   return body;

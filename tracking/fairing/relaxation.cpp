@@ -14,7 +14,7 @@ namespace {
 constexpr double kShare = 0.5;
 constexpr double kLargestRelaxation = 0.3;  // of the shortest edge at the vertex
 constexpr double kInvertedCosine = 0.2;
-constexpr double kRidge = 0.05;  // slope of the volume against the normal
+constexpr double kRidgeSlope = 0.05;  // slope of the volume against the normal
 constexpr int kTakeBackRounds = 8;
 
 // Six times the derivative of the enclosed volume by the position of a vertex.
@@ -35,7 +35,7 @@ Vec3 volume_gradient(int vertex, const MeshAdjacency& topology, const std::vecto
 Vec3 along_ridge(const Vec3& move, const Vec3& growth, const Vec3& normal) {
   const Vec3 uphill = growth - normal * normal.dot(growth);
   const double steepness = uphill.norm();
-  if (!(steepness > kRidge * growth.norm() && uphill.dot(move) < 0)) return move;
+  if (!(steepness > kRidgeSlope * growth.norm() && uphill.dot(move) < 0)) return move;
   return move - uphill * (uphill.dot(move) / (steepness * steepness));
 }
 

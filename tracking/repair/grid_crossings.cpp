@@ -7,7 +7,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr int kChunk = 4096;  // triangles
+constexpr int kTrianglesAtOnce = 4096;  // triangles
 
 // A corner of a triangle seen along the lines.
 struct Corner {
@@ -70,12 +70,12 @@ void add_crossings(const SparseGrid& grid, int axis, const std::vector<Vec3>& po
 
 std::vector<GridCrossing> grid_crossings(const SparseGrid& grid, int axis, const std::vector<Vec3>& positions,
                                          const std::vector<Triangle>& triangles) {
-  const int count = static_cast<int>(triangles.size()), chunks = count / kChunk + 1;
+  const int count = static_cast<int>(triangles.size()), chunks = count / kTrianglesAtOnce + 1;
   std::vector<std::vector<GridCrossing>> of_chunk(chunks);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int chunk = 0; chunk < chunks; ++chunk) {
-    add_crossings(grid, axis, positions, triangles, chunk * kChunk, std::min(count, (chunk + 1) * kChunk),
-                  of_chunk[chunk]);
+    add_crossings(grid, axis, positions, triangles, chunk * kTrianglesAtOnce,
+                  std::min(count, (chunk + 1) * kTrianglesAtOnce), of_chunk[chunk]);
   }
   std::vector<GridCrossing> crossings;
   for (const auto& part : of_chunk) crossings.insert(crossings.end(), part.begin(), part.end());

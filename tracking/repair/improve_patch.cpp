@@ -22,8 +22,8 @@ using namespace improvement;
 
 constexpr double kSameVertex = 0.5;              // edge lengths between an old vertex and the new one in its place
 constexpr double kAsFresh = 0.4;                 // edge lengths between it and the fresh surface
-constexpr double kSameSide = 0.7;                // cosine between their normals
-constexpr double kUpright = 0.5;                 // cosine of the largest turn of a triangle
+constexpr double kSameSidePatch = 0.7;           // cosine between their normals
+constexpr double kUprightTriangle = 0.5;         // cosine of the largest turn of a triangle
 constexpr double kLeastAngle = 20 * M_PI / 180;  // of a triangle then
 
 // The patch and the triangles around it, with numbers of their own: old vertices first, then the new ones.
@@ -163,7 +163,7 @@ bool may_move(const LocalMesh& mesh, const MeshAdjacency& topology, int vertex, 
     for (int i = 0; i < 3; ++i) after[i] = triangle[i] == vertex ? x : mesh.positions()[triangle[i]];
     const Vec3 before = doubled_area_vector(mesh.positions(), triangle);
     const Vec3 area = (after[1] - after[0]).cross(after[2] - after[0]);
-    if (!(area.dot(before) > kUpright * area.norm() * before.norm())) return false;
+    if (!(area.dot(before) > kUprightTriangle * area.norm() * before.norm())) return false;
     for (int i = 0; i < 3; ++i) {
       const Vec3 &a = after[i], &b = after[(i + 1) % 3], &c = after[(i + 2) % 3];
       const double length = (b - a).norm();
@@ -197,7 +197,7 @@ void keep_old_vertices(const FieldGrid& fresh, const MeshToMend& whole, const Me
   const std::vector<Vec3> places(mesh.positions().begin() + first, mesh.positions().end());
   const std::vector<Vec3> normals(mesh.normals().begin() + first, mesh.normals().end());
   const std::vector<int> old_of =
-      paired_points({old_places, old_normals}, {places, normals}, kSameVertex * edge_length, kSameSide);
+      paired_points({old_places, old_normals}, {places, normals}, kSameVertex * edge_length, kSameSidePatch);
   const MeshAdjacency topology = mesh.topology();
   for (int v = first; v < count; ++v) {
     if (!mesh.is_free(v) || old_of[v - first] < 0) continue;

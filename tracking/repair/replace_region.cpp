@@ -18,12 +18,12 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr int kMargin = 3;         // layers of cells by which the fresh surface overlaps the rest of the mesh
-constexpr double kReach = 0.75;    // between the two surfaces at the border, in cells
-constexpr double kOneSheet = 0.5;  // cosine between normals of one sheet
-constexpr double kNear = 0.4;      // cells that evening may carry the surface away from where marching cubes put it
-constexpr double kMissed = 0.47;   // cells; the fresh surface is not to be farther from the mesh at the border
-constexpr int kFreezings = 5;      // of places where evening does harm
+constexpr int kMargin = 3;               // layers of cells by which the fresh surface overlaps the rest of the mesh
+constexpr double kReach = 0.75;          // between the two surfaces at the border, in cells
+constexpr double kSameSideRegion = 0.5;  // cosine between normals of one sheet
+constexpr double kNear = 0.4;     // cells that evening may carry the surface away from where marching cubes put it
+constexpr double kMissed = 0.47;  // cells; the fresh surface is not to be farther from the mesh at the border
+constexpr int kFreezings = 5;     // of places where evening does harm
 
 // Fits the border of the hole into the fresh surface and takes what lies within.
 class Filling {
@@ -156,7 +156,7 @@ class Filling {
     const Vec3 normal = doubled_area_vector(patch_.positions(), triangle).normalized();
     for (int k : kept) {
       const Vec3 area = doubled_area_vector(mesh.positions, mesh.triangles[k]);
-      if (!(area.dot(normal) > kOneSheet * area.norm())) continue;
+      if (!(area.dot(normal) > kSameSideRegion * area.norm())) continue;
       for (int vertex : mesh.triangles[k]) {
         if ((mesh.positions[vertex] - patch_.positions()[triangle[0]]).norm() < kReach * fresh_.grid.spacing())
           return true;

@@ -11,7 +11,7 @@ namespace flowskin::tracking {
 namespace {
 
 constexpr double kSheetSide = 0.5;
-constexpr double kSurelyNear = 0.1;  // cells, to first order
+constexpr double kNearEnough = 0.1;  // cells, to first order
 
 void add_cell_of(const SparseGrid& grid, const Vec3& x, std::vector<CellSet::Cell>& cells) {
   add_cells(grid.coordinates(x), grid.coordinates(x), cells);
@@ -167,7 +167,7 @@ std::vector<CellSet::Cell> far_from_grid_surface(const SparseGrid& grid, double 
   // Most centres are told to be near by the values around them, which costs a fifth; but a vertex at the tip of a rim
   // can be far although it seems to be near to first order.
   const auto is_far = [&](const Vec3& x) { return !grid_surface.is_near(x, reach); };
-  const auto seems_near = [&](const Vec3& x) { return distance_in_cell(grid, grid.coordinates(x)) < kSurelyNear; };
+  const auto seems_near = [&](const Vec3& x) { return distance_in_cell(grid, grid.coordinates(x)) < kNearEnough; };
   std::vector<CellSet::Cell> cells;
   for (int v : where_true(positions.size(), [&](int i) { return used[i] && is_far(positions[i]); }))
     add_cell_of(grid, positions[v], cells);

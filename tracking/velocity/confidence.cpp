@@ -9,7 +9,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr RowWeights row_weights{1, 1, 0.3};
+constexpr RowWeights confidence_weights{1, 1, 0.3};
 constexpr double half_confidence = 0.1;  // the information s0 that counts as half known; see docs/velocity_methods.md
 constexpr double least_spin = 1e-10;  // a spin that moves the rows less than this is no excuse, relative to the others
 
@@ -18,7 +18,7 @@ constexpr double least_spin = 1e-10;  // a spin that moves the rows less than th
 Confidence field_confidence(const SurfacePoint& point) {
   Confidence confidence;
   if (!point.defined) return confidence;
-  const auto rows = rigid_rows(point, row_weights);
+  const auto rows = rigid_rows(point, confidence_weights);
   const Eigen::Matrix<double, 9, 2> along = rows.matrix.bottomLeftCorner<9, 3>() * point.tangents;
   const Eigen::Matrix<double, 9, 3> spin = rows.matrix.bottomRightCorner<9, 3>();
   Mat3 spin_normal = spin.transpose() * spin;

@@ -13,7 +13,7 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double damping_of_total = 1;  // as in total_tangential_velocity
+constexpr double damping_of_total_rows = 1;  // as in total_tangential_velocity
 
 /// The rows of K and H: how they change along the two tangents, and what is left to be made up for. K in 1/radius^2 and
 /// H in 1/radius make them comparable with each other and with the rows of the total velocity.
@@ -84,7 +84,7 @@ class CurvatureVelocity final : public PointwiseVelocity {
  public:
   explicit CurvatureVelocity(const CurvatureWeights& weights) : weights_(weights) {}
   Vec3 velocity(const SurfacePoint& point) const override {
-    const Vec2 total = total_tangential_velocity(point, damping_of_total);
+    const Vec2 total = total_tangential_velocity(point, damping_of_total_rows);
     const CurvatureRows rows = curvature_rows<Change>(point);
     const Vec3 rigid = point.normal_velocity + point.tangents * solve(rows, total, weights_.least);
     const double weight = weights_.least + weights_.factor * unexplained_by_spin(point, rigid);

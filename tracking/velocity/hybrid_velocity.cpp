@@ -11,16 +11,16 @@ namespace flowskin::tracking {
 namespace {
 
 // Chosen by measurement, see docs/velocity_methods.md.
-constexpr RowWeights kHybridRowWeights{1, 1, 1};
+constexpr RowWeights hybrid_weights{1, 1, 1};
 constexpr double flow_weight = 100;       // of the particles' flow, for a misfit of 1; it grows as 1 / misfit^2
 constexpr double least_misfit = 3e-5;     // squares of smaller misfits are rounding
 constexpr int flow_unknowns = 4;          // particles that a linear flow always fits
 constexpr double strain_share = 2.0 / 3;  // of the errors of a gradient's nine elements
 
-using Motion = Eigen::Matrix<double, 12, 1>;
+using AffineUnknowns = Eigen::Matrix<double, 12, 1>;
 
-Motion motion_of(const LocalFlow& flow, double radius) {
-  Motion motion;
+AffineUnknowns motion_of(const LocalFlow& flow, double radius) {
+  AffineUnknowns motion;
   motion << flow.velocity / radius, flow.gradient.reshaped();
   return motion;
 }
@@ -50,13 +50,13 @@ Vec3 hybrid_velocity(const LocalField& field, const Vec3& x) {
   const LocalFlow flow = with_significant_strain(local_flow(particles, x));
   const SurfacePoint point(field.motion_jet(x), field.scale());
   if (!point.defined || !flow.defined) return flow.velocity;
-  const auto rows = affine_rows(point, particles.moments(x), kHybridRowWeights);
+  const auto rows = affine_rows(point, particles.moments(x), hybrid_weights);
   const double weight = flow_weight / expected_misfit2(flow);
   // In the change of the particles' flow: exact where the field agrees with it.
-  const Motion start = motion_of(flow, radius);
+  const AffineUnknowns start = motion_of(flow, radius);
   Eigen::Matrix<double, 12, 12> normal = rows.matrix.transpose() * rows.matrix;
   normal.diagonal().array() += weight;
-  const Motion right = rows.matrix.transpose() * (rows.right_side - rows.matrix * start);
+  const AffineUnknowns right = rows.matrix.transpose() * (rows.right_side - rows.matrix * start);
   const Vec3 change = radius * normal.llt().solve(right).head<3>();
   return change.allFinite() ? Vec3(flow.velocity + change) : flow.velocity;
 }
