@@ -7,7 +7,7 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr int kPaperIterations = 10;  // [FMM13, Fig. 6]
+constexpr int kSpringIterations = 10;  // [FMM13, Fig. 6]
 
 // One overlap; rides of constant and variable springs alternate.
 struct Ring {
@@ -25,7 +25,7 @@ struct Ring {
 };
 
 std::vector<int> iteration_counts(const PaperRun& run) {
-  return run.quick ? std::vector<int>{kPaperIterations} : std::vector<int>{1, kPaperIterations, 30};
+  return run.quick ? std::vector<int>{kSpringIterations} : std::vector<int>{1, kSpringIterations, 30};
 }
 
 std::vector<std::string> shown_methods(const PaperRun& run) {
@@ -58,8 +58,8 @@ Claim less_drift(const std::vector<Ring>& rings, const std::string& method) {
   std::vector<bool> holds;
   std::string measured;
   for (const Ring& ring : rings) {
-    const double constant = ring.path_error(method, kPaperIterations, false),
-                 variable = ring.path_error(method, kPaperIterations, true);
+    const double constant = ring.path_error(method, kSpringIterations, false),
+                 variable = ring.path_error(method, kSpringIterations, true);
     holds.push_back(variable < constant);
     measured += fmt::format("{}{} overlap: constant {}, variable {}", measured.empty() ? "" : "; ", ring.name,
                             short_number(constant), short_number(variable));

@@ -75,7 +75,7 @@ class TraceScene {
   };
   const TraceDevice* device_;
   std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
-  Vec3f box_min_, box_max_;
+  Vec3f box_min_ = Vec3f::Zero(), box_max_ = Vec3f::Zero();
 };
 
 }  // namespace flowskin::tools
