@@ -25,7 +25,7 @@ namespace {
 constexpr double kDefaultEdgeInSpacings = 0.75;
 constexpr int kMostSubsteps = 1000;
 constexpr int kRemeshingPasses = 3;
-constexpr double kTorn = 3;  // times its length: the ends of an edge that were farther apart at rest are of two bodies
+constexpr double kTornAtRest = 3;  // times its length: the ends of an edge that were farther apart at rest are of two bodies
 constexpr int kFewIn = 50;   // one operation in so many vertices is few: another pass is not worth it
 constexpr double kDisagreementDepth = 0.3;  // of an edge length
 constexpr double kFarReach = 2;             // of old material where particles know none, in effective radii
@@ -331,7 +331,7 @@ class TrackerImpl {
     RemeshSettings limits;
     limits.edge_length = settings_.edge_length;
     limits.curvature = settings_.curvature_edges;
-    limits.torn = kTorn;
+    limits.torn = kTornAtRest;
     return limits;
   }
 

@@ -19,7 +19,7 @@ constexpr const char* kTwin = "curvature-belyaev";  // the same velocity by anot
 constexpr const char* kOthers = "other methods";    // stage of the clock
 constexpr double kReachInSpacings = 2;              // of closest points
 
-std::string joined(const std::vector<std::string>& words) {
+std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
@@ -66,7 +66,7 @@ std::vector<std::string> methods_to_compare(const std::string& list) {
       add(name);
     } else {
       throw InputError(fmt::format("--compare: there is no velocity method \"{}\"; expected some of {}, or all", name,
-                                   joined(known)));
+                                   listed(known)));
     }
   }
   return methods;
@@ -98,7 +98,7 @@ void Comparison::make_pictures(const Image& texture, const sph::Box& fluid) {
 std::string Comparison::description() const {
   std::vector<std::string> methods;
   for (const Entry& entry : entries_) methods.push_back(entry.method);
-  std::string text = fmt::format("comparing {} with {} markers that ride {}; {}", joined(methods),
+  std::string text = fmt::format("comparing {} with {} markers that ride {}; {}", listed(methods),
                                  truth_.markers().ids.size(), truth_.description(), kSlipFreely);
   if (scene_max_slip_ > 0)
     text += fmt::format(" (the surface that is written is held within max_slip = {:.4g} m and is not among them)",

@@ -13,8 +13,8 @@ namespace flowskin::tools {
 namespace {
 
 constexpr int kTileWidth = 480;  // pixels, at most
-constexpr int kSheetColumns = 6, kSheetPictureWidth = 320;
-constexpr Color kPaper{255, 255, 255}, kInk{52, 56, 64};
+constexpr int kComparedColumns = 6, kComparedPictureWidth = 320;
+constexpr Color kPaper{255, 255, 255}, kLabelInk{52, 56, 64};
 
 int even(double value) { return std::max(2, 2 * int(std::lround(value / 2))); }
 
@@ -27,8 +27,8 @@ scenes::RenderSpec tile_settings(scenes::RenderSpec render) {
 
 std::vector<int> sheet_frames(int frames) {
   std::vector<int> chosen;
-  for (int column = 0; column < kSheetColumns; ++column) {
-    const int frame = int(std::lround(double(column) * frames / (kSheetColumns - 1)));
+  for (int column = 0; column < kComparedColumns; ++column) {
+    const int frame = int(std::lround(double(column) * frames / (kComparedColumns - 1)));
     if (chosen.empty() || frame != chosen.back()) chosen.push_back(frame);
   }
   return chosen;
@@ -68,7 +68,7 @@ Image label_tiles(const std::vector<Image>& tiles, const std::vector<std::string
     const auto [left, top] = grid.corner(int(i));
     for (int y = 0; y < grid.height; ++y) std::copy_n(&tiles[i].at(0, y), grid.width, &sheet.at(left, top + y));
     draw_text(sheet, left + 0.5 * grid.text, top - grid.strip + 0.5 * (grid.strip + grid.text), grid.text, labels[i],
-              kInk);
+              kLabelInk);
   }
   return sheet;
 }
@@ -120,7 +120,7 @@ void ComparisonPictures::finish(bool video, const std::function<void(const std::
     for (std::size_t i = 0; i < tiles.size(); ++i) rows[i].push_back(tiles[i]);
   }
   if (column_labels.empty()) return;
-  write_png(directory_.compare_sheet(), contact_sheet(rows, row_labels, column_labels, kSheetPictureWidth));
+  write_png(directory_.compare_sheet(), contact_sheet(rows, row_labels, column_labels, kComparedPictureWidth));
   if (!video || !have_ffmpeg()) return;
   encode_video(directory_.image_folder() / "compare_%04d.png", frame_rate_, directory_.compare_video());
   report("wrote " + directory_.compare_video().string());

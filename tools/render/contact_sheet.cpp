@@ -11,7 +11,7 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr Color kBackground{255, 255, 255}, kInk{52, 56, 64};
+constexpr Color kBackground{255, 255, 255}, kSheetInk{52, 56, 64};
 
 // Which source pixels a target pixel covers, and how much of each.
 struct Span {
@@ -107,13 +107,13 @@ Image contact_sheet(const std::vector<std::vector<Image>>& rows, const std::vect
     // Along the left edge, read upwards; made smaller where it is longer than the picture is high.
     const double size = std::min(double(text), text * picture_height / std::max(1.0, text_width(row_labels[r], text)));
     draw_text(sheet, 2.0 * text, y + 0.5 * (picture_height + text_width(row_labels[r], size)), size, row_labels[r],
-              kInk, TextDirection::up);
+              kSheetInk, TextDirection::up);
   }
   for (std::size_t c = 0; c < std::min(columns, column_labels.size()); ++c) {
     const double size =
         std::min(double(text), text * picture_width / std::max(1.0, text_width(column_labels[c], text)));
     const double middle = left + double(c) * (picture_width + gap) + 0.5 * picture_width;
-    draw_text(sheet, middle - 0.5 * text_width(column_labels[c], size), 2.0 * text, size, column_labels[c], kInk);
+    draw_text(sheet, middle - 0.5 * text_width(column_labels[c], size), 2.0 * text, size, column_labels[c], kSheetInk);
   }
   return sheet;
 }

@@ -20,7 +20,7 @@ std::vector<std::string> methods_of(const std::vector<CompareRow>& rows) {
   return methods;
 }
 
-double relative(double error_squares, double flow_squares) {
+double relative_error(double error_squares, double flow_squares) {
   return flow_squares > 0 ? std::sqrt(error_squares / flow_squares) : 0;
 }
 
@@ -47,8 +47,8 @@ MethodScore score_of(const std::string& method, const std::vector<CompareRow>& r
     score.drift += row.texture_drift / spacing;
   }
   for (double* mean : {&score.texture, &score.path, &score.drift}) *mean /= std::max(1, frames);
-  score.velocity = relative(error, flow);
-  score.tangential = relative(tangential_error, tangential_flow);
+  score.velocity = relative_error(error, flow);
+  score.tangential = relative_error(tangential_error, tangential_flow);
   return score;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kBorder = 12, kGap = 18, kSheetTitleSize = 15;  // pixels
+constexpr double kBorder = 12, kPanelGap = 18, kSheetTitleSize = 15;  // pixels
 constexpr int kPngScale = 2;
 
 using Surface = std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)>;
@@ -48,7 +48,7 @@ SheetLayout lay_out(const PlotPen& pen, const PlotSheet& sheet) {
   const int count = static_cast<int>(sheet.plots.size());
   layout.columns = std::min(sheet.columns, count);
   const int rows = (count + layout.columns - 1) / layout.columns;
-  layout.width = 2 * kBorder + layout.columns * sheet.panel_width + (layout.columns - 1) * kGap;
+  layout.width = 2 * kBorder + layout.columns * sheet.panel_width + (layout.columns - 1) * kPanelGap;
   layout.bars = !sheet.plots.front().categories.empty();
   const auto same = [&](const Plot& plot) {
     return legend_of(plot) == legend_of(sheet.plots.front()) && plot.categories.empty() != layout.bars;
@@ -58,7 +58,7 @@ SheetLayout lay_out(const PlotPen& pen, const PlotSheet& sheet) {
   if (!sheet.title.empty()) layout.panels_top += kSheetTitleSize + 12;
   const double of_legend = legend_height(pen, layout.shared, layout.width - 2 * kBorder, layout.bars);
   layout.panels_top += of_legend > 0 ? of_legend + 8 : 0;
-  layout.height = layout.panels_top + rows * sheet.panel_height + (rows - 1) * kGap + kBorder;
+  layout.height = layout.panels_top + rows * sheet.panel_height + (rows - 1) * kPanelGap + kBorder;
   return layout;
 }
 
@@ -76,8 +76,8 @@ void draw(cairo_t* context, const PlotSheet& sheet, const SheetLayout& layout) {
   draw_legend(pen, layout.shared, {kBorder, top, layout.width - 2 * kBorder, 0}, layout.bars);
   for (std::size_t i = 0; i < sheet.plots.size(); ++i) {
     const int column = static_cast<int>(i) % layout.columns, row = static_cast<int>(i) / layout.columns;
-    const PlotBox box{kBorder + column * (sheet.panel_width + kGap),
-                      layout.panels_top + row * (sheet.panel_height + kGap), sheet.panel_width, sheet.panel_height};
+    const PlotBox box{kBorder + column * (sheet.panel_width + kPanelGap),
+                      layout.panels_top + row * (sheet.panel_height + kPanelGap), sheet.panel_width, sheet.panel_height};
     draw_panel(pen, sheet.plots[i], box, layout.shared.empty());
   }
 }
