@@ -60,7 +60,7 @@ class RecordedSourceTest : public testing::Test {
   }
 
   std::unique_ptr<ParticleSource> open(const std::string& pattern, double interval = 0.5,
-                                       const std::string& ids = "automatic") const {
+                                       RecordedSpec::Ids ids = RecordedSpec::Ids::automatic) const {
     Scene scene;
     scene.directory = folder_.string();
     scene.particles.source = ParticlesSpec::Source::recorded;
@@ -181,7 +181,7 @@ TEST_F(RecordedSourceTest, WrongSequencesAreErrors) {
   EXPECT_THAT(error_of_pattern("none"), HasSubstr("no particle files"));
   write("n_1.ply", one, positions_only);
   write("n_2.ply", two, positions_only);
-  EXPECT_THAT(error_of([&] { open("n_*.ply", 0.5, "order")->advance_to(0.5); }),
+  EXPECT_THAT(error_of([&] { open("n_*.ply", 0.5, RecordedSpec::Ids::order)->advance_to(0.5); }),
               AllOf(HasSubstr("n_2.ply"), HasSubstr("no ids")));
   write("c_1.ply", one, with_ids | with_velocities);
   write("c_2.ply", one, with_ids);
@@ -236,7 +236,7 @@ TEST_F(RecordedSourceTest, GapsInTheNumbersAreMissingFiles) {
 
 TEST_F(RecordedSourceTest, TimesComeFromTheFilesWhereNobodyTellsThem) {
   const auto sequence = [&](const std::string& pattern, double interval = 0) {
-    return open_sequence({{pattern}, interval, "automatic"}, folder_.string());
+    return open_sequence({{pattern}, interval, RecordedSpec::Ids::automatic}, folder_.string());
   };
   const auto write_times = [&](const std::string& name, const std::vector<double>& times) {
     for (std::size_t k = 0; k < times.size(); ++k)
@@ -280,13 +280,13 @@ TEST_F(RecordedSourceTest, WithoutIdsTheirOrderCountsWhereItLasts) {
   write("more_0.ply", particles, with_velocities);
   particles.push_back({0, {1, 1, 1}});
   write("more_1.ply", particles, with_velocities);
-  const auto state_of = [&](const std::string& pattern, const std::string& ids = "automatic") {
+  const auto state_of = [&](const std::string& pattern, RecordedSpec::Ids ids = RecordedSpec::Ids::automatic) {
     const auto source = open(pattern, 0.5, ids);
     source->advance_to(0.125);
     return source->state();
   };
   EXPECT_TRUE(state_of("same_*.ply").has_lasting_ids);
-  EXPECT_FALSE(state_of("same_*.ply", "none").has_lasting_ids);
+  EXPECT_FALSE(state_of("same_*.ply", RecordedSpec::Ids::none).has_lasting_ids);
   const ParticleState mess = state_of("mess_*.ply");
   EXPECT_FALSE(mess.has_lasting_ids || mess.has_velocities || mess.has_material);
   // Between the files both states are there, with weights.

@@ -2,6 +2,7 @@
 // derivatives in closed form.
 #pragma once
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

@@ -88,7 +88,9 @@ TEST(AnalyticField, NeighborhoodsGiveTheFieldItself) {
   Neighborhoods(*field, points, 0.1).for_each([&](int i, const LocalField& local) {
     ++visits[i];
     EXPECT_EQ(local.particles(), nullptr);
-    if (points[i].allFinite()) EXPECT_EQ(local.value(points[i]), field->value(points[i]));
+    if (points[i].allFinite()) {
+      EXPECT_EQ(local.value(points[i]), field->value(points[i]));
+    }
   });
   EXPECT_EQ(visits, std::vector<int>(points.size(), 1));
 }

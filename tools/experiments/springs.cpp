@@ -10,7 +10,7 @@ namespace {
 constexpr int kSpringIterations = 10;  // [FMM13, Fig. 6]
 
 // One overlap; rides of constant and variable springs alternate.
-struct Ring {
+struct SpringRing {
   std::string name;
   scenes::Scene scene;
   std::vector<Ride> rides;
@@ -24,7 +24,7 @@ struct Ring {
   }
 };
 
-std::vector<int> iteration_counts(const PaperRun& run) {
+std::vector<int> spring_iterations(const PaperRun& run) {
   return run.quick ? std::vector<int>{kSpringIterations} : std::vector<int>{1, kSpringIterations, 30};
 }
 
@@ -34,14 +34,14 @@ std::vector<std::string> shown_methods(const PaperRun& run) {
   return methods;
 }
 
-Ring measure(const PaperRun& run, const std::string& name) {
-  Ring ring{name, run.scene("ring_" + name), {}};
+SpringRing measure_springs(const PaperRun& run, const std::string& name) {
+  SpringRing ring{name, run.scene("ring_" + name), {}};
   RideSettings settings = ride_settings(ring.scene);
   settings.steps_per_period = run.quick ? 12 : 60;
   if (run.quick) settings.periods = 1;
   std::vector<RideSettings> all;
   for (const std::string& method : shown_methods(run)) {
-    for (const int iterations : iteration_counts(run)) {
+    for (const int iterations : spring_iterations(run)) {
       for (const bool variable : {false, true}) {
         settings.velocity = method;
         settings.fairing_iterations = iterations;
@@ -54,10 +54,10 @@ Ring measure(const PaperRun& run, const std::string& name) {
   return ring;
 }
 
-Claim less_drift(const std::vector<Ring>& rings, const std::string& method) {
+Claim less_drift(const std::vector<SpringRing>& rings, const std::string& method) {
   std::vector<bool> holds;
   std::string measured;
-  for (const Ring& ring : rings) {
+  for (const SpringRing& ring : rings) {
     const double constant = ring.path_error(method, kSpringIterations, false),
                  variable = ring.path_error(method, kSpringIterations, true);
     holds.push_back(variable < constant);
@@ -71,7 +71,7 @@ Claim less_drift(const std::vector<Ring>& rings, const std::string& method) {
       "where the field is silent."};
 }
 
-Plot error_plot(const PaperRun& run, const Ring& ring) {
+Plot error_plot(const PaperRun& run, const SpringRing& ring) {
   Plot plot;
   plot.title = ring.name + " overlap";
   plot.x_label = "fairing iterations";
@@ -80,7 +80,7 @@ Plot error_plot(const PaperRun& run, const Ring& ring) {
   for (const std::string& method : shown_methods(run)) {
     for (const bool variable : {false, true}) {
       Series series{fmt::format("{}, {} springs", method, variable ? "variable" : "constant"), {}, {}};
-      for (const int iterations : iteration_counts(run)) {
+      for (const int iterations : spring_iterations(run)) {
         series.x.push_back(iterations);
         series.y.push_back(ring.path_error(method, iterations, variable));
       }
@@ -93,8 +93,8 @@ Plot error_plot(const PaperRun& run, const Ring& ring) {
 }  // namespace
 
 ExperimentReport springs_experiment(const PaperRun& run) {
-  std::vector<Ring> rings;
-  for (const char* name : {"strong", "medium", "weak"}) rings.push_back(measure(run, name));
+  std::vector<SpringRing> rings;
+  for (const char* name : {"strong", "medium", "weak"}) rings.push_back(measure_springs(run, name));
   ExperimentReport report;
   report.title = "Variable spring constants (Sec. 5)";
   const RideSettings& settings = rings.front().rides.front().settings;
@@ -110,10 +110,10 @@ ExperimentReport springs_experiment(const PaperRun& run) {
   sheet.title = "Drift with constant and variable springs";
   sheet.columns = int(rings.size());
   sheet.panel_width = 380;
-  for (const Ring& ring : rings) {
+  for (const SpringRing& ring : rings) {
     for (const Ride& ride : ring.rides) add_ride_end(rides, ring.scene, ride);
     for (const std::string& method : shown_methods(run))
-      for (const int iterations : iteration_counts(run))
+      for (const int iterations : spring_iterations(run))
         brief.add({ring.name, method, iterations, ring.path_error(method, iterations, false),
                    ring.path_error(method, iterations, true)});
     sheet.plots.push_back(error_plot(run, ring));
