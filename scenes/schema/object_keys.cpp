@@ -27,21 +27,24 @@ void add_placement_keys(KeyTable& table, MeshPlacement& mesh) {
 }
 
 void add_rheology_keys(KeyTable& table, const std::string& prefix, sph::Rheology& rheology) {
-  table.number(prefix + "consistency", rheology.consistency, at_least(0, 1e9), "Pa s^n",
+  using sph::range_of;
+  using sph::Rheology;
+  table.number(prefix + "consistency", rheology.consistency, range_of(&Rheology::consistency), "Pa s^n",
                "Consistency K of Herschel and Bulkley's law; 0: density times viscosity, with flow_index 1.");
-  table.number(prefix + "flow_index", rheology.flow_index, above(0, 5), "",
+  table.number(prefix + "flow_index", rheology.flow_index, range_of(&Rheology::flow_index), "",
                "Flow index n: below 1 the fluid is thinner, above 1 thicker when sheared. Counts with consistency.");
-  table.number(prefix + "yield_stress", rheology.yield_stress, at_least(0, 1e9), "Pa",
+  table.number(prefix + "yield_stress", rheology.yield_stress, range_of(&Rheology::yield_stress), "Pa",
                "Stress below which the fluid hardly flows.");
-  table.number(prefix + "regularization", rheology.regularization, above(0, 1e9), "s",
+  table.number(prefix + "regularization", rheology.regularization, range_of(&Rheology::regularization), "s",
                "Papanastasiou's m: the fluid yields above shear rates of about 1/m.");
-  table.number(prefix + "max_viscosity", rheology.max_viscosity, above(0, 1e4), "m^2/s",
+  table.number(prefix + "max_viscosity", rheology.max_viscosity, range_of(&Rheology::max_viscosity), "m^2/s",
                "Greatest kinematic viscosity, that of fluid which does not yield.");
 }
 
 void add_fluid_keys(KeyTable& table, sph::Fluid& fluid) {
   table.text("name", fluid.name, "By which bodies and emitters refer to it.").is_required();
-  table.number("viscosity", fluid.viscosity, at_least(0, 1e4), "m^2/s", "Kinematic viscosity: water 1e-6, honey 5e-3.");
+  table.number("viscosity", fluid.viscosity, sph::range_of(&sph::SolverSettings::viscosity), "m^2/s",
+               "Kinematic viscosity: water 1e-6, honey 5e-3.");
   add_rheology_keys(table, "rheology.", fluid.rheology);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/number_text.h"
+#include "common/range.h"
 #include "scenes/json_text.h"
 #include "sph/geometry/triangle_mesh.h"
 
@@ -31,14 +32,6 @@ struct Kind {
   std::function<V(const JsonNode&)> read;                  ///< Throws Mismatch.
   std::function<std::string(const V&, int indent)> write;  ///< As JSON; further lines start with `indent` spaces.
 };
-
-/// Numbers allowed; an open end does not belong to the range.
-struct Range {
-  double min = 0, max = 0;
-  bool open_min = false;
-};
-inline Range at_least(double min, double max) { return {min, max, false}; }
-inline Range above(double min, double max) { return {min, max, true}; }
 
 /// Coordinates and other signed quantities may be this large: far beyond any scene, small enough for squares and cubes.
 constexpr double max_coordinate = 1e6;

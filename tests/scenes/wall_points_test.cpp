@@ -16,7 +16,7 @@ namespace {
 Scene scene_with(const std::string& boundaries, const std::string& tracking = "{}",
                  const std::string& particles = R"("source": "simulation")") {
   const std::string text = R"({"frames": 2, "particles": {"spacing": 0.05, )" + particles +
-                           R"(}, "fluid": {"viscosity": 0.01},
+                           R"(},
     "bodies": [{"shape": "ball", "center": [0, 0.5, 0], "radius": 0.2}], "tracking": )" +
                            tracking + R"(, "boundaries": )" + boundaries + "}";
   return parse_scene(text, "test", FLOWSKIN_SOURCE_DIR "/scenes");

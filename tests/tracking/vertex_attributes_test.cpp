@@ -115,6 +115,7 @@ TEST(VertexAttributes, ArchivesGiveThemBack) {
   std::string bytes;
   StateWriter writer([&bytes](std::string_view more) { bytes += more; });
   visit_state(writer, mesh);
+  writer.flush();
   SurfaceMesh again;
   StateReader reader(bytes);
   visit_state(reader, again);
