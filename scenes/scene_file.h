@@ -6,17 +6,9 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "scenes/schema/scene_key.h"
 
 namespace flowskin::scenes {
-
-/// One key of the scene file, for documentation and for `flowskin scene --keys`.
-struct SceneKey {
-  std::string path;           ///< such as "fluid.viscosity" or "bodies[].radius"
-  std::string type;           ///< such as "number", "3 numbers", "one of: box, planar, spherical"
-  std::string unit;           ///< such as "m^2/s", "spacings", or "" for none
-  std::string default_value;  ///< as JSON; "required" where there is none
-  std::string meaning;        ///< one sentence
-};
 
 /// @throws InputError naming the file, the key and its place (line), what was expected and, for an unknown key or
 /// value, the nearest valid one. Meshes that the scene names are read and placed.

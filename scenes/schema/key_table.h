@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenes/scene_file.h"
+#include "scenes/schema/scene_key.h"
 #include "scenes/schema/values.h"
 
 namespace flowskin::scenes {

@@ -10,12 +10,10 @@
 
 #include "common/number_text.h"
 #include "common/range.h"
+#include "common/vectors.h"
 #include "scenes/json_text.h"
-#include "sph/geometry/triangle_mesh.h"
 
 namespace flowskin::scenes {
-
-using sph::Vec3;
 
 /// A value is not of the kind expected.
 struct Mismatch {
