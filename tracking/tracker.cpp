@@ -25,8 +25,9 @@ namespace {
 constexpr double kDefaultEdgeInSpacings = 0.75;
 constexpr int kMostSubsteps = 1000;
 constexpr int kRemeshingPasses = 3;
-constexpr double kTornAtRest = 3;  // times its length: the ends of an edge that were farther apart at rest are of two bodies
-constexpr int kFewIn = 50;   // one operation in so many vertices is few: another pass is not worth it
+constexpr double kTornAtRest =
+    3;                      // times its length: the ends of an edge that were farther apart at rest are of two bodies
+constexpr int kFewIn = 50;  // one operation in so many vertices is few: another pass is not worth it
 constexpr double kDisagreementDepth = 0.3;  // of an edge length
 constexpr double kFarReach = 2;             // of old material where particles know none, in effective radii
 
@@ -68,7 +69,11 @@ TrackerSettings filled_in_for_field(TrackerSettings settings) {
 TrackerSettings filled_in(TrackerSettings settings) {
   check_lengths(settings);
   check_rest(settings);
-  if (settings.field.radius == 0) settings.field = default_field_settings(settings.spacing);
+  if (settings.field.radius == 0) {
+    const double wall_share = settings.field.wall_share;
+    settings.field = default_field_settings(settings.spacing);
+    settings.field.wall_share = wall_share;
+  }
   require(std::isfinite(settings.field.radius) && settings.field.radius > 0, "field.radius", settings.field.radius,
           "positive (m), or 0 for the default");
   require(settings.field.wall_share >= 0 && settings.field.wall_share <= 0.5, "field.wall_share",

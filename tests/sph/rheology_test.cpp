@@ -162,7 +162,7 @@ TEST(Fluids, ImpossibleFluidsAreNamed) {
   setup = two_blocks();
   setup.fluids[1].rheology.flow_index = -1;
   setup.fluids[1].rheology.consistency = 3;
-  EXPECT_NE(message(setup).find("fluid \"thick\": its flow index"), std::string::npos);
+  EXPECT_NE(message(setup).find("fluid \"thick\": flow_index"), std::string::npos);
   setup = two_blocks();
   setup.settings.viscosity_form = ViscosityForm::morris;
   EXPECT_NE(message(setup).find("choose monaghan"), std::string::npos);

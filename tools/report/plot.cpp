@@ -77,7 +77,8 @@ void draw(cairo_t* context, const PlotSheet& sheet, const SheetLayout& layout) {
   for (std::size_t i = 0; i < sheet.plots.size(); ++i) {
     const int column = static_cast<int>(i) % layout.columns, row = static_cast<int>(i) / layout.columns;
     const PlotBox box{kBorder + column * (sheet.panel_width + kPanelGap),
-                      layout.panels_top + row * (sheet.panel_height + kPanelGap), sheet.panel_width, sheet.panel_height};
+                      layout.panels_top + row * (sheet.panel_height + kPanelGap), sheet.panel_width,
+                      sheet.panel_height};
     draw_panel(pen, sheet.plots[i], box, layout.shared.empty());
   }
 }

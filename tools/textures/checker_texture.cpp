@@ -11,10 +11,10 @@ namespace flowskin::tools {
 namespace {
 
 constexpr int kCells = 8;
-constexpr float kLabelHeight = 0.40F;  ///< in cells
-constexpr float kLabelGap = 0.16F;     ///< between the two characters, in cells
-constexpr float kPenRadius = 0.049F;   ///< in cells
-constexpr float kCheckerLineWidth = 0.014F;   ///< half the width of the grid's lines, in cells
+constexpr float kLabelHeight = 0.40F;        ///< in cells
+constexpr float kLabelGap = 0.16F;           ///< between the two characters, in cells
+constexpr float kPenRadius = 0.049F;         ///< in cells
+constexpr float kCheckerLineWidth = 0.014F;  ///< half the width of the grid's lines, in cells
 
 struct CellStyle {
   Vec3 fill, label;  ///< linear light

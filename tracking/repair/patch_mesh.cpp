@@ -11,10 +11,10 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kFacesWanted = 0.3;  // cosine between a triangle's normal and the one asked for
-constexpr double kAtVertex = 0.7;     // weight of a corner from which on it is moved
-constexpr double kAtEdge = 0.15;      // weight of a corner up to which its opposite side is split
-constexpr double kUprightWhenMoved = 0.3;      // cosine of the largest turn of a triangle when a corner moves
+constexpr double kFacesWanted = 0.3;       // cosine between a triangle's normal and the one asked for
+constexpr double kAtVertex = 0.7;          // weight of a corner from which on it is moved
+constexpr double kAtEdge = 0.15;           // weight of a corner up to which its opposite side is split
+constexpr double kUprightWhenMoved = 0.3;  // cosine of the largest turn of a triangle when a corner moves
 constexpr int kFlipsPerEdge = 40;
 
 // Twice the signed area of a triangle seen against the normal.
