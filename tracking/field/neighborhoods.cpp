@@ -8,13 +8,13 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double cell_in_scales = 0.25;  // finer cells would not change the order by much
-constexpr double farthest = 1e150;       // m; a place beyond is none
+constexpr double cell_in_scales = 0.25;   // finer cells would not change the order by much
+constexpr double kFarthestPlace = 1e150;  // m; a place beyond is none
 
 /// All points along the curve; those that are not finite at the end.
 std::vector<int> order_of(const std::vector<Vec3>& points, double cell) {
   // The curve needs differences of places.
-  const auto finite = [](const Vec3& x) { return (x.array().abs() < farthest).all(); };
+  const auto finite = [](const Vec3& x) { return (x.array().abs() < kFarthestPlace).all(); };
   if (std::all_of(points.begin(), points.end(), finite)) return hilbert_order(points, cell);
   std::vector<int> numbers(points.size());
   std::iota(numbers.begin(), numbers.end(), 0);

@@ -18,7 +18,7 @@ constexpr double cell_in_reaches = 0.2;  // finer cells would not change the ord
 constexpr int tree_leaf_size = 8;
 
 // A query looks a little further, so that a particle on the rim of its reach is not lost to rounding.
-constexpr double margin = 1 + 1e-9;
+constexpr double kBoxMargin = 1 + 1e-9;
 // Where lanes without a particle lie: the square is finite, and nothing is near.
 constexpr double far_away = 1e150;
 
@@ -179,7 +179,7 @@ void ParticleBlocks::fill_block(const Block& block, const std::vector<Vec3>& pos
 void ParticleBlocks::blocks_near(const Vec3& x, double radius, std::vector<int>& found) const {
   found.clear();
   if (!tree_ || !x.allFinite()) return;
-  BlocksWithin blocks(square((radius + largest_block_) * margin), found);
+  BlocksWithin blocks(square((radius + largest_block_) * kBoxMargin), found);
   tree_->index.findNeighbors(blocks, x.data(), {});
   std::sort(found.begin(), found.end());
 }
@@ -189,7 +189,7 @@ GroupList ParticleBlocks::near(const Vec3& x, double radius, std::vector<int>& f
   blocks_near(x, radius, near_blocks);
   const std::size_t most = near_blocks.size() * largest_count / lane_count;
   if (found.size() < most) found.resize(most);
-  const double limit = square(radius * margin);
+  const double limit = square(radius * kBoxMargin);
   int count = 0;
   for (const int index : near_blocks) {
     const Block& block = blocks_[index];
@@ -202,7 +202,7 @@ GroupList ParticleBlocks::near(const Vec3& x, double radius, std::vector<int>& f
 void ParticleBlocks::boxes_near(const Vec3& low, const Vec3& high, double radius, std::vector<int>& found) const {
   thread_local std::vector<int> near_blocks;
   blocks_near(0.5 * (low + high), radius + 0.5 * (high - low).norm(), near_blocks);
-  const double limit = square(radius * margin);
+  const double limit = square(radius * kBoxMargin);
   found.clear();
   for (const int index : near_blocks) {
     const Block& block = blocks_[index];
@@ -214,7 +214,7 @@ void ParticleBlocks::boxes_near(const Vec3& low, const Vec3& high, double radius
 
 void ParticleBlocks::append_near(const Vec3& x, double radius, const std::vector<int>& boxes,
                                  std::vector<int>& found) const {
-  const double limit = square(radius * margin);
+  const double limit = square(radius * kBoxMargin);
   const std::size_t before = found.size();
   found.resize(before + boxes.size() * lane_count);
   int* const begin = found.data() + before;
