@@ -81,7 +81,7 @@ TEST(Drop, CapillaryLimitOfTheStep) {
   SimulationSetup setup = DropSetup::cube(4, 1e-3);
   setup.settings.speed_of_sound = 0.05;
   setup.settings.max_speed = 0.01;
-  setup.settings.force_cfl = 100;
+  setup.settings.force_cfl = 2;
   Solver solver(setup);
   solver.step();
   const double h = setup.settings.spacing;  // half the support radius of two spacings
