@@ -92,7 +92,7 @@ inline double asphericity(const FluidState& state, double spacing) {
   const Vec3 c = centroid(state);
   double least = 1e300, most = 0;
   for (int k = 0; k < 27; ++k) {
-    const Vec3 direction = Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    const Vec3 direction = Eigen::Vector3i(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1).cast<double>();
     if (direction.isZero()) continue;
     double reach = 0;
     for (const Vec3& p : state.positions) reach = std::max(reach, (p - c).dot(direction.normalized()));
