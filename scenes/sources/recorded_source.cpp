@@ -13,25 +13,16 @@
 #include "scenes/sources/particle_spacing.h"
 #include "scenes/sources/wall_points.h"
 #include "tracking/advection/jumps.h"
+#include "tracking/advection/match_ids.h"
+#include "tracking/mesh/point_tree.h"
 
 namespace flowskin::scenes {
 namespace {
 
+using tracking::match_ids;
+
 /// A time this near to a file's (in frame intervals) is the file's: rounding of frame times must not interpolate.
 constexpr double same_time = 1e-9;
-
-/// Calls visit(i, j) for all ids of two states in ascending order; -1 where the id is in the other one only.
-template <class Visit>
-void match_ids(const ParticleState& a, const ParticleState& b, Visit visit) {
-  std::size_t i = 0, j = 0;
-  while (i < a.ids.size() || j < b.ids.size()) {
-    const bool in_a = i < a.ids.size() && (j >= b.ids.size() || a.ids[i] <= b.ids[j]);
-    const bool in_b = j < b.ids.size() && (i >= a.ids.size() || b.ids[j] <= a.ids[i]);
-    visit(in_a ? static_cast<std::ptrdiff_t>(i) : -1, in_b ? static_cast<std::ptrdiff_t>(j) : -1);
-    i += in_a ? 1 : 0;
-    j += in_b ? 1 : 0;
-  }
-}
 
 void append(ParticleState& state, const ParticleState& from, std::size_t i, const Vec3& position, const Vec3& velocity,
             double density) {
@@ -46,7 +37,7 @@ void append(ParticleState& state, const ParticleState& from, std::size_t i, cons
 std::vector<char> jumps_between(const ParticleState& a, const ParticleState& b, double interval, bool with_velocities,
                                 double spacing) {
   std::vector<tracking::Sighting> both;
-  match_ids(a, b, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+  match_ids(a.ids, b.ids, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
     if (i < 0 || j < 0) return;
     both.push_back({b.positions[j] - a.positions[i]});
     if (!with_velocities) return;
@@ -60,7 +51,7 @@ std::vector<char> jumps_between(const ParticleState& a, const ParticleState& b, 
 template <class Visit>
 void match_particles(const ParticleState& a, const ParticleState& b, const std::vector<char>& jumps, Visit visit) {
   std::size_t k = 0;
-  match_ids(a, b, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+  match_ids(a.ids, b.ids, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
     const bool same = i < 0 || j < 0 || jumps.empty() || !jumps[k];
     if (i >= 0 && j >= 0) ++k;
     if (same) return visit(i, j);
@@ -112,13 +103,22 @@ struct PlaceInFile {
   Vec3 position;
 };
 
-/// Adds where the particles are in another file, a time `time` away, except those that jumped.
-void add_places(const ParticleState& here, const ParticleState& other, double time, double spacing,
-                std::vector<std::vector<PlaceInFile>>& places) {
-  match_particles(here, other, jumps_between(here, other, time, false, spacing),
-                  [&](std::ptrdiff_t i, std::ptrdiff_t j) {
-                    if (i >= 0 && j >= 0) places[i].push_back({time, other.positions[j]});
-                  });
+/// Adds to `ids` those of the particles that jump from one file to the next, a time `interval` later or earlier.
+void add_jumpers(const ParticleState& from, const ParticleState& to, double interval, double spacing,
+                 std::vector<std::uint64_t>& ids) {
+  match_particles(from, to, jumps_between(from, to, interval, false, spacing), [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+    if (i >= 0 && j < 0) ids.push_back(from.ids[i]);
+  });
+  std::sort(ids.begin(), ids.end());
+}
+
+/// Adds where the particles are in another file, a time `time` away, but for some, whose ids ascend.
+void add_places(const ParticleState& here, const ParticleState& other, double time,
+                const std::vector<std::uint64_t>& but_for, std::vector<std::vector<PlaceInFile>>& places) {
+  match_ids(here.ids, other.ids, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+    if (i >= 0 && j >= 0 && !std::binary_search(but_for.begin(), but_for.end(), here.ids[i]))
+      places[i].push_back({time, other.positions[j]});
+  });
 }
 
 /// Derivative at time 0 of the polynomial through a place at time 0 and up to two others.
@@ -130,6 +130,26 @@ Vec3 velocity_through(const Vec3& here, const std::vector<PlaceInFile>& others) 
   const double b = others[1].time;
   const Vec3 slope_b = (others[1].position - here) / b;
   return (b * slope_a - a * slope_b) / (b - a);
+}
+
+/// Particles that no other file knows, or that have just jumped, move as the nearest one that is known moves.
+void take_velocities_of_nearest(const std::vector<std::vector<PlaceInFile>>& places, ParticleState& state) {
+  std::vector<Vec3> known, velocities;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i].empty()) continue;
+    known.push_back(state.positions[i]);
+    velocities.push_back(state.velocities[i]);
+  }
+  if (known.empty() || known.size() == places.size()) return;
+  const tracking::PointCloud cloud{known};
+  const tracking::PointTree tree(3, cloud);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!places[i].empty()) continue;
+    int nearest = 0;
+    double squared = 0;
+    tree.knnSearch(state.positions[i].data(), 1, &nearest, &squared);
+    state.velocities[i] = velocities[nearest];
+  }
 }
 
 }  // namespace
@@ -278,7 +298,7 @@ void RecordedSource::settle_rest_positions(std::size_t k, ParticleState& state) 
     const double interval = sequence_.times[k] - sequence_.times[k - 1];
     const std::vector<char> jumps = jumps_between(last, state, interval, sequence_.first.has_velocities, spacing_);
     std::size_t both = 0;
-    match_ids(last, state, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+    match_ids(last.ids, state.ids, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
       if (jumps.empty() || i < 0 || j < 0 || !jumps[both++]) return;
       Vec3& rest_position = rest_positions_[state.ids[j]];
       renewals_.push_back({k, state.ids[j], rest_position});
@@ -305,10 +325,17 @@ ParticleState RecordedSource::complete_state(std::size_t k) {
   for (std::size_t i = low; i <= high; ++i) file_state(i);
   ParticleState here = file_state(k);
   std::vector<std::vector<PlaceInFile>> places(here.ids.size());
-  for (std::size_t i = low; i <= high; ++i) {
-    if (i != k) add_places(here, file_state(i), sequence_.times[i] - sequence_.times[k], spacing_, places);
+  // From file to file, as far as each particle goes without a jump: over several files many would have jumped.
+  const std::vector<double>& times = sequence_.times;
+  for (const int step : {-1, 1}) {
+    std::vector<std::uint64_t> gone;
+    for (std::size_t i = k; i != (step < 0 ? low : high); i += step) {
+      add_jumpers(file_state(i), file_state(i + step), times[i + step] - times[i], spacing_, gone);
+      add_places(here, file_state(i + step), times[i + step] - times[k], gone, places);
+    }
   }
   for (std::size_t i = 0; i < here.ids.size(); ++i) here.velocities[i] = velocity_through(here.positions[i], places[i]);
+  take_velocities_of_nearest(places, here);
   return here;
 }
 

@@ -312,14 +312,14 @@ TEST_F(RecordedSourceTest, ParticlesThatJumpHaveNoVelocityFromTheJump) {
   }
 }
 
-// A stream along x, half a spacing a file; what leaves at its end comes in again under the same id.
-std::vector<TestParticle> stream(double file) {
-  constexpr int length = 20;
+// A stream along x of so many spacings a file; what leaves at its end comes in again under the same id.
+std::vector<TestParticle> stream(double file, double spacings = 0.5, int length = 20) {
   std::vector<TestParticle> particles;
   for (int i = 0; i < length; ++i) {
     for (int j = 0; j < 2; ++j) {
-      const double place = std::fmod(i + 0.5 * file, length);
-      particles.push_back({static_cast<std::uint64_t>(2 * i + j), Vec3(0.1 * place, 0.1 * j, 0), Vec3(0.1, 0, 0)});
+      const double place = std::fmod(i + spacings * file, length);
+      particles.push_back(
+          {static_cast<std::uint64_t>(2 * i + j), Vec3(0.1 * place, 0.1 * j, 0), Vec3(0.2 * spacings, 0, 0)});
     }
   }
   return particles;
@@ -327,16 +327,18 @@ std::vector<TestParticle> stream(double file) {
 
 TEST_F(RecordedSourceTest, ParticlesThatAreUsedAgainDoNotFlyThroughTheFluid) {
   for (const int columns : {with_ids | with_velocities, int{with_ids}}) {
-    for (int k = 0; k < 12; ++k) write(fmt::format("stream_{:02}.ply", k), stream(k), columns);
-    const auto source = open("stream_*.ply", 0.5);
-    for (double time = 0; time <= 5.5; time += 0.125) {
-      source->advance_to(time);
-      const ParticleState& state = source->state();
-      EXPECT_EQ(state.ids.size(), 40U) << time;
-      for (std::size_t i = 0; i < state.ids.size(); ++i) {
-        EXPECT_NEAR(state.velocities[i].x(), 0.1, 1e-12) << columns << " " << time;
-        EXPECT_GT(state.positions[i].x(), -0.1 - 1e-12);
-        EXPECT_LT(state.positions[i].x(), 2.1 + 1e-12);
+    for (const auto& [spacings, length] : {std::pair{0.5, 20}, std::pair{3.0, 40}}) {
+      for (int k = 0; k < 12; ++k) write(fmt::format("stream_{:02}.ply", k), stream(k, spacings, length), columns);
+      const auto source = open("stream_*.ply", 0.5);
+      for (double time = 0; time <= 5.5; time += 0.125) {
+        source->advance_to(time);
+        const ParticleState& state = source->state();
+        EXPECT_EQ(state.ids.size(), 2U * length) << time;
+        for (std::size_t i = 0; i < state.ids.size(); ++i) {
+          EXPECT_NEAR(state.velocities[i].x(), 0.2 * spacings, 1e-12) << columns << " " << time;
+          EXPECT_GT(state.positions[i].x(), -0.1 * spacings - 1e-12);
+          EXPECT_LT(state.positions[i].x(), 0.1 * length + 0.1 * spacings + 1e-12);
+        }
       }
     }
   }

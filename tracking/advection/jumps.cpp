@@ -29,26 +29,21 @@ std::vector<char> jumped(const std::vector<Sighting>& particles, double duration
                          const JumpRule& rule) {
   const double shortest = spacing * (has_velocities ? rule.shortest : rule.shortest_without_velocities);
   const Vec3 usual = has_velocities ? Vec3(Vec3::Zero()) : median_displacement(particles);
+  const auto error = [&](const Sighting& particle) {
+    return (particle.displacement - usual - duration / 2 * (particle.before + particle.after)).norm();
+  };
+  const auto is_far = [&](const Sighting& particle) {
+    const double path = std::abs(duration) / 2 * (particle.before.norm() + particle.after.norm());
+    return error(particle) > std::max(shortest, rule.paths * path);
+  };
+  if (std::none_of(particles.begin(), particles.end(), is_far)) return {};
+  // Where many are off, as by a gap in a sequence, being off proves nothing.
   std::vector<double> errors;
   errors.reserve(particles.size());
-  for (const Sighting& particle : particles) {
-    const Vec3 expected = usual + duration / 2 * (particle.before + particle.after);
-    errors.push_back((particle.displacement - expected).norm());
-  }
-  const auto is_far = [&](std::size_t i) {
-    const double path = std::abs(duration) / 2 * (particles[i].before.norm() + particles[i].after.norm());
-    return errors[i] > std::max(shortest, rule.paths * path);
-  };
-  std::vector<char> result;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    if (!is_far(i)) continue;
-    if (result.empty()) result.resize(particles.size());
-    result[i] = 1;
-  }
-  if (result.empty()) return result;
-  // Where many are off, as by a gap in a sequence, being off proves nothing.
+  for (const Sighting& particle : particles) errors.push_back(error(particle));
   const double limit = rule.usual_errors * quantile(errors, kMost);
-  for (std::size_t i = 0; i < particles.size(); ++i) result[i] = result[i] && errors[i] > limit;
+  std::vector<char> result(particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i) result[i] = errors[i] > limit && is_far(particles[i]);
   if (std::find(result.begin(), result.end(), 1) == result.end()) result.clear();
   return result;
 }

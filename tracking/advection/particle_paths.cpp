@@ -8,6 +8,7 @@
 
 #include "common/quantile.h"
 #include "tracking/advection/jumps.h"
+#include "tracking/advection/match_ids.h"
 #include "tracking/mesh/point_tree.h"
 
 namespace flowskin::tracking {
@@ -15,19 +16,6 @@ namespace {
 
 constexpr std::size_t most_samples = 20000;
 constexpr double most_share = 0.998;
-
-/// Calls visit(i, j) for all ids of two states in ascending order; -1 where the id is in the other one only.
-template <class Visit>
-void match_ids(const Particles& from, const Particles& to, const Visit& visit) {
-  std::size_t i = 0, j = 0;
-  while (i < from.ids.size() || j < to.ids.size()) {
-    const bool in_from = i < from.ids.size() && (j == to.ids.size() || from.ids[i] <= to.ids[j]);
-    const bool in_to = j < to.ids.size() && (i == from.ids.size() || to.ids[j] <= from.ids[i]);
-    visit(in_from ? static_cast<std::ptrdiff_t>(i) : -1, in_to ? static_cast<std::ptrdiff_t>(j) : -1);
-    i += in_from ? 1 : 0;
-    j += in_to ? 1 : 0;
-  }
-}
 
 // One part for each run of equal weights, in the order of the particles.
 std::vector<FieldPart> parts_of(const Particles& particles) {
@@ -137,13 +125,13 @@ void ParticlePaths::match(const Particles& from, const Particles& to, double spa
     paths_.push_back({x - duration * v, v, x, v, false});
   };
   std::vector<Sighting> both;
-  match_ids(from, to, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+  match_ids(from.ids, to.ids, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
     if (i >= 0 && j >= 0) both.push_back({to.positions[j] - from.positions[i], from.velocities[i], to.velocities[j]});
   });
   const std::vector<char> jump = jumped(both, duration, true, spacing);
   jumps_ = !jump.empty();
   std::size_t k = 0;
-  match_ids(from, to, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+  match_ids(from.ids, to.ids, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
     const bool in_both = i >= 0 && j >= 0;
     if (in_both && !(jumps_ && jump[k++])) {
       paths_.push_back({from.positions[i], from.velocities[i], to.positions[j], to.velocities[j], false});
