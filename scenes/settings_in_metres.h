@@ -19,7 +19,4 @@ double max_slip_of(const Scene& scene);
 /// The method of that name, or for automatic_velocity the best one for these particles.
 std::string velocity_method_for(const std::string& name, const ParticleState& state);
 
-/// The name of an integrator in scene files.
-std::string name_of(tracking::Integrator integrator);
-
 }  // namespace flowskin::scenes

@@ -118,8 +118,12 @@ class KeyTable {
             std::string_view documented_type = "");
   /// One of an enumeration's values by name.
   template <class E>
-  Key& choice(std::string_view path, E& member, const std::vector<std::pair<const char*, E>>& values,
-              std::string_view meaning);
+  Key& choice(std::string_view path, E& member, const std::vector<NamedValue<E>>& values, std::string_view meaning);
+  template <class E, std::size_t count>
+  Key& choice(std::string_view path, E& member, const std::array<NamedValue<E>, count>& values,
+              std::string_view meaning) {
+    return choice(path, member, std::vector(values.begin(), values.end()), meaning);
+  }
   /// Objects; `keys_of` adds the keys of one.
   template <class Item>
   Key& list(std::string_view path, std::vector<Item>& items, void (*keys_of)(KeyTable&, Item&),
@@ -151,7 +155,7 @@ class BoundChoice final : public BoundEnumeration {
 };
 
 template <class E>
-Key& KeyTable::choice(std::string_view path, E& member, const std::vector<std::pair<const char*, E>>& values,
+Key& KeyTable::choice(std::string_view path, E& member, const std::vector<NamedValue<E>>& values,
                       std::string_view meaning) {
   std::vector<std::string> names;
   std::vector<E> known;

@@ -17,6 +17,29 @@ void add_box_keys(KeyTable& table, sph::Box& box) {
   table.vector("max", box.max, "m", "Upper corner.").is_required();
 }
 
+// Where a body or a sink is: a box, which each calls by a name of its own, a ball or a mesh.
+template <class Object>
+void add_solid_keys(KeyTable& table, Object& object, typename Object::Shape box_shape, const char* box_name,
+                    sph::Box& box, MeshPlacement& placement, std::string_view meaning) {
+  using Shape = typename Object::Shape;
+  const Condition is_box = shape_is(object.shape, box_shape, box_name);
+  const Condition is_ball = shape_is(object.shape, Shape::ball, "ball");
+  const Condition is_mesh = shape_is(object.shape, Shape::mesh, "mesh");
+  table
+      .choice<Shape>("shape", object.shape, {{box_name, box_shape}, {"ball", Shape::ball}, {"mesh", Shape::mesh}},
+                     meaning)
+      .is_required()
+      .selecting();
+  std::size_t first = table.keys().size();
+  add_box_keys(table, box);
+  table.restrict_from(first, is_box);
+  table.vector("center", object.center, "m", "Centre.").is_required().only_for(is_ball);
+  table.number("radius", object.radius, above(0, 1e5), "m", "Radius.").is_required().only_for(is_ball);
+  first = table.keys().size();
+  add_placement_keys(table, placement);
+  table.restrict_from(first, is_mesh);
+}
+
 }  // namespace
 
 void add_placement_keys(KeyTable& table, MeshPlacement& mesh) {
@@ -49,23 +72,8 @@ void add_fluid_keys(KeyTable& table, sph::Fluid& fluid) {
 }
 
 void add_body_keys(KeyTable& table, BodySpec& spec) {
-  using Shape = sph::FluidBody::Shape;
   sph::FluidBody& body = spec.body;
-  const Condition block = shape_is(body.shape, Shape::block, "block");
-  const Condition ball = shape_is(body.shape, Shape::ball, "ball");
-  const Condition mesh = shape_is(body.shape, Shape::mesh, "mesh");
-  table
-      .choice<Shape>("shape", body.shape, {{"block", Shape::block}, {"ball", Shape::ball}, {"mesh", Shape::mesh}},
-                     "Shape of the body.")
-      .is_required()
-      .selecting();
-  table.vector("min", body.block.min, "m", "Lower corner.").is_required().only_for(block);
-  table.vector("max", body.block.max, "m", "Upper corner.").is_required().only_for(block);
-  table.vector("center", body.center, "m", "Centre.").is_required().only_for(ball);
-  table.number("radius", body.radius, above(0, 1e5), "m", "Radius.").is_required().only_for(ball);
-  const std::size_t first = table.keys().size();
-  add_placement_keys(table, spec.mesh);
-  table.restrict_from(first, mesh);
+  add_solid_keys(table, body, sph::FluidBody::Shape::block, "block", body.block, spec.mesh, "Shape of the body.");
   table.list("cuts", body.cuts, add_box_keys, "Boxes that stay empty: slots, hollows.");
   table.vector("velocity", body.velocity, "m/s", "Initial velocity.", 1e4);
   table.vector("angular_velocity", body.angular_velocity, "rad/s", "Initial spin about the body's centroid.", 1e4);
@@ -105,23 +113,8 @@ void add_emitter_keys(KeyTable& table, EmitterSpec& spec) {
 }
 
 void add_sink_keys(KeyTable& table, SinkSpec& spec) {
-  using Shape = sph::Sink::Shape;
   sph::Sink& sink = spec.sink;
-  const Condition box = shape_is(sink.shape, Shape::box, "box");
-  const Condition ball = shape_is(sink.shape, Shape::ball, "ball");
-  const Condition mesh = shape_is(sink.shape, Shape::mesh, "mesh");
-  table
-      .choice<Shape>("shape", sink.shape, {{"box", Shape::box}, {"ball", Shape::ball}, {"mesh", Shape::mesh}},
-                     "Shape of the region.")
-      .is_required()
-      .selecting();
-  table.vector("min", sink.box.min, "m", "Lower corner.").is_required().only_for(box);
-  table.vector("max", sink.box.max, "m", "Upper corner.").is_required().only_for(box);
-  table.vector("center", sink.center, "m", "Centre.").is_required().only_for(ball);
-  table.number("radius", sink.radius, above(0, 1e5), "m", "Radius.").is_required().only_for(ball);
-  const std::size_t first = table.keys().size();
-  add_placement_keys(table, spec.mesh);
-  table.restrict_from(first, mesh);
+  add_solid_keys(table, sink, sph::Sink::Shape::box, "box", sink.box, spec.mesh, "Shape of the region.");
   table.number("start", sink.start, at_least(0, 1e30), "s", "Time at which it opens.");
   table.number("stop", sink.stop, at_least(0, 1e30), "s", "Time at which it closes.");
 }

@@ -31,17 +31,12 @@ void add_properties(KeyTable& table, Scene& scene) {
 void add_viscosity_keys(KeyTable& table, SolverSettings& solver) {
   const Condition not_explicit{"simulation.viscosity_solver \"auto\" or \"implicit\"",
                                [&solver] { return solver.viscosity_solver != sph::ViscositySolver::explicit_steps; }};
-  table.choice<sph::ViscosityForm>("simulation.viscosity_form", solver.viscosity_form,
-                                   {{"monaghan", sph::ViscosityForm::monaghan}, {"morris", sph::ViscosityForm::morris}},
-                                   "Discrete form of the viscous force; monaghan keeps angular momentum.");
+  table.choice("simulation.viscosity_form", solver.viscosity_form, sph::kViscosityFormNames,
+               "Discrete form of the viscous force; monaghan keeps angular momentum.");
   table
-      .choice<sph::ViscositySolver>(
-          "simulation.viscosity_solver", solver.viscosity_solver,
-          {{"auto", sph::ViscositySolver::automatic},
-           {"explicit", sph::ViscositySolver::explicit_steps},
-           {"implicit", sph::ViscositySolver::implicit}},
-          "explicit: viscosity limits the time step; implicit: a linear system every step instead; auto: implicit "
-          "where the viscous limit is below a quarter of the acoustic one.")
+      .choice("simulation.viscosity_solver", solver.viscosity_solver, sph::kViscositySolverNames,
+              "explicit: viscosity limits the time step; implicit: a linear system every step instead; auto: implicit "
+              "where the viscous limit is below a quarter of the acoustic one.")
       .selecting();
   table
       .number("simulation.viscosity_tolerance", solver.viscosity_tolerance,
@@ -59,10 +54,8 @@ void add_density_keys(KeyTable& table, SolverSettings& solver) {
   const Condition by_continuity{"simulation.density_method \"continuity\"",
                                 [&solver] { return solver.density_method == sph::DensityMethod::continuity; }};
   table
-      .choice<sph::DensityMethod>(
-          "simulation.density_method", solver.density_method,
-          {{"summation", sph::DensityMethod::summation}, {"continuity", sph::DensityMethod::continuity}},
-          "Density by summation over the neighbours (cannot drift) or from the continuity equation.")
+      .choice("simulation.density_method", solver.density_method, sph::kDensityMethodNames,
+              "Density by summation over the neighbours (cannot drift) or from the continuity equation.")
       .selecting();
   table
       .number("simulation.density_diffusion", solver.density_diffusion, range_of(&SolverSettings::density_diffusion),
@@ -105,10 +98,7 @@ void add_solver_keys(KeyTable& table, Scene& scene) {
   const std::size_t first = table.keys().size();
   add_properties(table, scene);
   table.vector("simulation.gravity", solver.gravity, "m/s^2", "Acceleration of gravity.", sph::kGreatestGravity);
-  table.choice<sph::KernelType>(
-      "simulation.kernel", solver.kernel,
-      {{"wendland_c2", sph::KernelType::wendland_c2}, {"cubic_spline", sph::KernelType::cubic_spline}},
-      "Smoothing kernel.");
+  table.choice("simulation.kernel", solver.kernel, sph::kKernelNames, "Smoothing kernel.");
   table.number("simulation.support_radius", solver.support_radius, range_of(&SolverSettings::support_radius),
                "spacings", "Support radius of the kernel; 2 gives about 30 neighbours.");
   table.number("simulation.max_speed", solver.max_speed, range_of(&SolverSettings::max_speed), "m/s",

@@ -1,6 +1,4 @@
 // The tracker: straight into its settings. Lengths stay in spacings here; settings_in_metres() converts them.
-#include <stdexcept>
-
 #include "scenes/schema/schema.h"
 #include "scenes/settings_in_metres.h"
 
@@ -8,7 +6,6 @@ namespace flowskin::scenes {
 
 namespace {
 
-using tracking::Integrator;
 using tracking::SmallParts;
 
 std::vector<std::string> method_names() {
@@ -17,20 +14,7 @@ std::vector<std::string> method_names() {
   return names;
 }
 
-const std::vector<std::pair<const char*, Integrator>>& integrators() {
-  static const std::vector<std::pair<const char*, Integrator>> list{
-      {"euler", Integrator::euler}, {"rk2", Integrator::rk2}, {"rk4", Integrator::rk4}};
-  return list;
-}
-
 }  // namespace
-
-std::string name_of(tracking::Integrator integrator) {
-  for (const auto& [name, value] : integrators()) {
-    if (value == integrator) return name;
-  }
-  throw std::logic_error("an integrator without a name");
-}
 
 void add_tracking_keys(KeyTable& table, TrackingSpec& tracking) {
   table.boolean("tracking.enabled", tracking.enabled, "Whether a surface is tracked at all.");
@@ -39,8 +23,8 @@ void add_tracking_keys(KeyTable& table, TrackingSpec& tracking) {
       "Method that gives the velocity of the surface; auto: hybrid for particles with velocities, affine for those "
       "without.",
       "auto, or the name of a velocity method (flowskin methods lists them)");
-  table.choice<Integrator>("tracking.integrator", tracking.integrator, integrators(),
-                           "Time integration of the vertices.");
+  table.choice("tracking.integrator", tracking.integrator, tracking::kIntegratorNames,
+               "Time integration of the vertices.");
   table.integer("tracking.steps_per_frame", tracking.steps_per_frame, 1, 10000, "",
                 "Particle states per frame, one step of the tracker each.");
   table.number("tracking.max_motion", tracking.max_motion, above(0, 10), "effective radii",

@@ -21,13 +21,8 @@ struct Rheology {
   bool is_newtonian() const { return consistency == 0 && yield_stress == 0; }
 };
 
-/// One of the numbers of a rheology, and what it may be, in scene files and in set-ups made by a program alike.
-struct RheologyNumber {
-  std::string_view name;
-  double Rheology::*value;
-  Range range;
-  std::string_view unit;
-};
+using RheologyNumber = NamedNumber<Rheology>;
+/// What the numbers of a rheology may be, in scene files and in set-ups made by a program alike.
 /// Upper ends only catch slips, but for the flow index: shear-thickening fluids have up to about 2.
 inline constexpr std::array kRheologyNumbers{
     RheologyNumber{"consistency", &Rheology::consistency, at_least(0, 1e9), "Pa s^n"},
@@ -36,12 +31,7 @@ inline constexpr std::array kRheologyNumbers{
     RheologyNumber{"regularization", &Rheology::regularization, above(0, 1e9), "s"},
     RheologyNumber{"max_viscosity", &Rheology::max_viscosity, above(0, 1e4), "m^2/s"},
 };
-consteval Range range_of(double Rheology::*value) {
-  for (const RheologyNumber& number : kRheologyNumbers) {
-    if (number.value == value) return number.range;
-  }
-  throw "this number has no range in kRheologyNumbers";
-}
+consteval Range range_of(double Rheology::*value) { return range_in(kRheologyNumbers, value); }
 
 /// One of the fluids of a set-up. All have the rest density of the settings.
 struct Fluid {

@@ -89,14 +89,7 @@ struct SolverSettings {
   std::array<bool, 3> periodic{};
 };
 
-/// One of the numbers among the settings, and what it may be.
-struct NumberSetting {
-  std::string_view name;
-  double SolverSettings::*value;
-  Range range;
-  std::string_view unit;
-};
-
+using NumberSetting = NamedNumber<SolverSettings>;
 /// What the numbers may be, in scene files and in set-ups made by a program alike. Upper ends without a comment only
 /// catch slips: they lie far beyond all that has been simulated.
 inline constexpr std::array kNumberSettings{
@@ -132,12 +125,7 @@ inline constexpr Range kViscosityIterations = at_least(1, 1e6);
 /// Of each component of the gravity (m/s^2).
 inline constexpr double kGreatestGravity = 1e4;
 
-/// The range of one of the numbers; does not compile for one that the table lacks.
-consteval Range range_of(double SolverSettings::*value) {
-  for (const NumberSetting& number : kNumberSettings) {
-    if (number.value == value) return number.range;
-  }
-  throw "this setting has no range in kNumberSettings";
-}
+/// The range of one of the numbers.
+consteval Range range_of(double SolverSettings::*value) { return range_in(kNumberSettings, value); }
 
 }  // namespace flowskin::sph

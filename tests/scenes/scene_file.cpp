@@ -234,7 +234,7 @@ TEST(SceneFile, TrackingKeysReachTheTrackersSettings) {
       {"euler", Integrator::euler}, {"rk2", Integrator::rk2}, {"rk4", Integrator::rk4}};
   for (const auto& [name, value] : integrators) {
     EXPECT_EQ(settings_of("\"integrator\": \"" + name + "\"").integrator, value);
-    EXPECT_EQ(name_of(value), name);
+    EXPECT_EQ(name_of(tracking::kIntegratorNames, value), name);
   }
   const std::vector<std::pair<std::string, SmallParts>> parts{
       {"keep", SmallParts::keep}, {"drop", SmallParts::drop}, {"balls", SmallParts::balls}};

@@ -17,8 +17,8 @@ std::string surface_line(const tracking::Tracker& tracker) {
   return fmt::format(
       "surface: {} vertices, velocity {}, {}, effective radius {:.4g} m, threshold {:.4g}, edge {:.4g} m, {} "
       "fairing iterations, texture slips {}",
-      tracker.mesh().positions.size(), settings.velocity, scenes::name_of(settings.integrator), settings.field.radius,
-      settings.field.threshold, settings.edge_length, settings.fairing_iterations,
+      tracker.mesh().positions.size(), settings.velocity, name_of(tracking::kIntegratorNames, settings.integrator),
+      settings.field.radius, settings.field.threshold, settings.edge_length, settings.fairing_iterations,
       settings.max_slip > 0 ? fmt::format("{:.4g} m at most", settings.max_slip) : "freely");
 }
 

@@ -1,10 +1,12 @@
 // Moves vertices with a surface velocity.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
 
+#include "common/named_value.h"
 #include "tracking/field/implicit_field.h"
 #include "tracking/mesh/adjacency.h"
 #include "tracking/velocity/velocity_method.h"
@@ -12,6 +14,9 @@
 namespace flowskin::tracking {
 
 enum class Integrator { euler, rk2, rk4 };
+inline constexpr std::array kIntegratorNames{NamedValue<Integrator>{"euler", Integrator::euler},
+                                             NamedValue<Integrator>{"rk2", Integrator::rk2},
+                                             NamedValue<Integrator>{"rk4", Integrator::rk4}};
 
 /// The field at a time (s), built anew.
 using FieldAt = std::function<std::shared_ptr<const ImplicitField>(double)>;
