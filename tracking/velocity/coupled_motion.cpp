@@ -39,6 +39,31 @@ std::vector<int> components(const MeshAdjacency& topology, int count) {
   return of_vertex;
 }
 
+// Of the motions that fit the field equally well (a ball may spin, a pair of particles may shear as well as turn) the
+// one with the least strain, and of those the one with the least gradient. Of any size: a few calls a step are not
+// worth code for each.
+Eigen::VectorXd plainest_solution(const Eigen::MatrixXd& block, const Eigen::VectorXd& right_side,
+                                  const Eigen::MatrixXd& plainness) {
+  const Eigen::Index n = block.rows(), parameters = plainness.cols();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(block);
+  const Eigen::VectorXd& values = solver.eigenvalues();
+  const Eigen::VectorXd along = solver.eigenvectors().transpose() * right_side;
+  Eigen::VectorXd solution = Eigen::VectorXd::Zero(n);
+  Eigen::Index free = 0;  // eigenvectors that the field does not see; eigenvalues ascend
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (values[k] > kLeast * values[n - 1]) {
+      solution += along[k] / values[k] * solver.eigenvectors().col(k);
+    } else {
+      ++free;
+    }
+  }
+  if (free == 0) return solution;
+  const Eigen::MatrixXd choices = plainness * solver.eigenvectors().leftCols(free).bottomRows(parameters);
+  const Eigen::VectorXd excess = plainness * solution.tail(parameters);
+  const Eigen::VectorXd change = choices.completeOrthogonalDecomposition().solve(-excess);
+  return solution + solver.eigenvectors().leftCols(free) * change;
+}
+
 template <class Motion>
 class CoupledSystem {
  public:
@@ -156,7 +181,9 @@ class CoupledSystem {
       }
     }
     std::vector<Vector> motions(part_count);
-    for (int c = 0; c < part_count; ++c) motions[c] = plainest_solution(parts[c].block, parts[c].right_side);
+    for (int c = 0; c < part_count; ++c) {
+      motions[c] = plainest_solution(parts[c].block, parts[c].right_side, Motion::plainness());
+    }
     Field start(count_);
     for (int v = 0; v < count_; ++v) {
       const Vector& motion = motions[component[v]];
@@ -166,29 +193,6 @@ class CoupledSystem {
       if (!start[v].allFinite()) start[v].setZero();
     }
     return start;
-  }
-
-  // Of the motions that fit the field equally well (a ball may spin, a pair of particles may shear as well as turn) the
-  // one with the least strain, and of those the one with the least gradient.
-  static Vector plainest_solution(const Matrix& block, const Vector& right_side) {
-    const Eigen::SelfAdjointEigenSolver<Matrix> solver(block);
-    const Vector& values = solver.eigenvalues();
-    const Vector along = solver.eigenvectors().transpose() * right_side;
-    Vector solution = Vector::Zero();
-    int free = 0;  // eigenvectors that the field does not see; eigenvalues ascend
-    for (int k = 0; k < n; ++k) {
-      if (values[k] > kLeast * values[n - 1]) {
-        solution += along[k] / values[k] * solver.eigenvectors().col(k);
-      } else {
-        ++free;
-      }
-    }
-    if (free == 0) return solution;
-    const Eigen::MatrixXd choices =
-        Motion::plainness() * solver.eigenvectors().leftCols(free).template bottomRows<Motion::parameters>();
-    const Eigen::VectorXd excess = Motion::plainness() * solution.template tail<Motion::parameters>();
-    const Eigen::VectorXd change = choices.completeOrthogonalDecomposition().solve(-excess);
-    return solution + solver.eigenvectors().leftCols(free) * change;
   }
 
   // Zero for ends in one place, and where one of them is nowhere near.
