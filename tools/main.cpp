@@ -1,3 +1,7 @@
 #include "tools/commands/command_line.h"
+#include "tools/openmp_waits.h"
 
-int main(int argc, char** argv) { return flowskin::tools::run_program(argc, argv); }
+int main(int argc, char** argv) {
+  flowskin::tools::restart_with_short_waits(argv);
+  return flowskin::tools::run_program(argc, argv);
+}
