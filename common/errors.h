@@ -1,7 +1,9 @@
 // Errors that end a program, and what its exit status is then.
 #pragma once
 
+#include <exception>
 #include <stdexcept>
+#include <string>
 
 namespace flowskin {
 
@@ -15,5 +17,8 @@ struct InputError : std::runtime_error {
 struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// What an exception says to the user; those of std::filesystem as "path: reason".
+std::string plain_message(const std::exception& error);
 
 }  // namespace flowskin

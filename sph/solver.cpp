@@ -24,6 +24,7 @@ std::size_t Solver::particle_count() const { return impl_->particles().size(); }
 std::size_t Solver::boundary_particle_count() const { return impl_->boundary().positions().size(); }
 const SolverSettings& Solver::settings() const { return impl_->settings(); }
 const SolverStatistics& Solver::statistics() const { return impl_->statistics(); }
+const std::vector<std::string>& Solver::warnings() const { return impl_->warnings(); }
 std::size_t Solver::memory_bytes() const { return impl_->memory_bytes(); }
 std::vector<Vec3> Solver::boundary_positions() const { return impl_->boundary().positions(); }
 void Solver::save(StateWriter& writer) const { impl_->save(writer); }

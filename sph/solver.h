@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "common/state_archive.h"
@@ -60,6 +61,8 @@ class Solver {
   /// Settings with all automatic values (speed of sound, fastest flow, skin) filled in.
   const SolverSettings& settings() const;
   const SolverStatistics& statistics() const;
+  /// What of the set-up is likely a slip, such as fluid outside the domain.
+  const std::vector<std::string>& warnings() const;
   Energy energy() const;
   Vec3 momentum() const;  ///< kg m/s
   /// Bytes held by the solver's arrays, lists included.

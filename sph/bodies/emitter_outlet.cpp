@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/number_text.h"
 #include "sph/setup/errors.h"
 
 namespace flowskin::sph {
@@ -31,11 +32,13 @@ EmitterOutlet::EmitterOutlet(const Emitter& emitter, double spacing, const std::
   up_ = axis_.cross(across_);
   if (shape_ == Emitter::Shape::disc) {
     if (!(emitter.radius > 0)) throw SettingsError(name + ": its radius must be greater than 0");
+    check_size(2 * emitter.radius, 2 * emitter.radius, spacing, name);
     make_disc(emitter, spacing);
   } else if (shape_ == Emitter::Shape::rectangle) {
     if (!(emitter.width > 0 && emitter.height > 0)) {
       throw SettingsError(name + ": its width and height must be greater than 0");
     }
+    check_size(emitter.width, emitter.height, spacing, name);
     const Vec3 up = up_of(emitter, axis_);
     if (!(up.norm() > 1e-6 * emitter.up.norm())) throw SettingsError(name + ": its up must not be along its direction");
     up_ = up.normalized();
@@ -48,6 +51,17 @@ EmitterOutlet::EmitterOutlet(const Emitter& emitter, double spacing, const std::
     throw SettingsError(name +
                         ": it is too small for a particle at this spacing: make it larger or the spacing smaller");
   }
+}
+
+// Before memory is taken for a layer of particles in the box around the outlet.
+void EmitterOutlet::check_size(double width, double height, double spacing, const std::string& name) {
+  constexpr double most = 1e7;
+  const double count = (width / spacing + 1) * (height / spacing + 1);
+  if (count <= most) return;
+  throw SettingsError(name + ": a layer of its outlet, " + number_text(width, 4) + " m by " + number_text(height, 4) +
+                      " m, holds about " + number_text(count, 4) + " particles at a spacing of " +
+                      number_text(spacing, 4) + " m; at most " + number_text(most, 4) +
+                      " are possible: make the outlet smaller or the spacing larger");
 }
 
 // Of the square lattices with a point or the middle of a cell at the centre, the one closer to the disc's area.
@@ -106,6 +120,7 @@ void EmitterOutlet::make_shadow(const Emitter& emitter, double spacing, const st
   const Vec3 middle(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), high.z());
   center_ = frame.transpose() * middle;
 
+  check_size(2 * half_width_, 2 * half_height_, spacing, name);
   cell_ = std::max(spacing / cells_per_spacing, std::sqrt(4 * half_width_ * half_height_ / most_cells));
   columns_ = static_cast<int>(2 * half_width_ / cell_) + 1;
   rows_ = static_cast<int>(2 * half_height_ / cell_) + 1;

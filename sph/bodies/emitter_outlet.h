@@ -25,6 +25,7 @@ class EmitterOutlet {
   bool contains(const Vec3& p, double margin) const;
 
  private:
+  static void check_size(double width, double height, double spacing, const std::string& name);
   void make_disc(const Emitter& emitter, double spacing);
   void make_rectangle(const Emitter& emitter, double spacing);
   void make_shadow(const Emitter& emitter, double spacing, const std::string& name);

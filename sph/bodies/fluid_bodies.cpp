@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "common/number_text.h"
 #include "sph/geometry/mesh_inside.h"
 #include "sph/neighbors/point_grid.h"
 #include "sph/setup/errors.h"
@@ -21,7 +22,8 @@ template <typename Keep>
 std::vector<Vec3> lattice(const Box& box, double spacing, Keep keep) {
   std::vector<Vec3> points;
   // The number of points (i + 1/2) spacing below the box's length.
-  const Eigen::Array3i count = ((box.max - box.min) / spacing - Vec3::Constant(0.5 + 1e-9)).array().ceil().cast<int>();
+  const Eigen::Array3i count =
+      ((box.max - box.min) / spacing - Vec3::Constant(0.5 + 1e-9)).array().ceil().min(1e9).cast<int>();
   for (int i = 0; i < count.x(); ++i) {
     for (int j = 0; j < count.y(); ++j) {
       for (int k = 0; k < count.z(); ++k) {
@@ -47,6 +49,25 @@ std::vector<Vec3> fill_ball(const FluidBody& body, double spacing, const std::st
                  [&](const Vec3& p) { return (p - body.center).squaredNorm() < body.radius * body.radius; });
 }
 
+// Before memory is taken for what a stray vertex or a slip of the spacing asks for.
+void check_size(const TriangleMesh& mesh, double spacing, const std::string& name) {
+  constexpr double most_points = 2e10, most_rows = 5e7;
+  Vec3 low = Vec3::Constant(1e300), high = -low;
+  for (const auto& t : mesh.triangles) {
+    for (const int v : t) {
+      low = low.cwiseMin(mesh.positions[v]);
+      high = high.cwiseMax(mesh.positions[v]);
+    }
+  }
+  const Vec3 count = (high - low) / spacing + Vec3::Ones();
+  if (count.prod() <= most_points && count.y() * count.z() <= most_rows) return;
+  throw SettingsError(name + " (mesh): the box around its mesh, from (" + number_text(low.x(), 4) + ", " +
+                      number_text(low.y(), 4) + ", " + number_text(low.z(), 4) + ") to (" + number_text(high.x(), 4) +
+                      ", " + number_text(high.y(), 4) + ", " + number_text(high.z(), 4) + ") m, holds " +
+                      number_text(count.prod(), 4) + " points at a spacing of " + number_text(spacing, 4) +
+                      " m, too many to look at: make the spacing larger or the mesh smaller (does a vertex stray?)");
+}
+
 std::vector<Vec3> fill_mesh(const FluidBody& body, double spacing, const std::string& name) {
   if (body.mesh.triangles.empty()) throw SettingsError(name + " (mesh): the mesh has no triangles");
   if (!is_closed(body.mesh)) {
@@ -54,6 +75,7 @@ std::vector<Vec3> fill_mesh(const FluidBody& body, double spacing, const std::st
                         " (mesh): the mesh is not closed, so it has no inside; close its holes and make the "
                         "triangles' orientation consistent");
   }
+  check_size(body.mesh, spacing, name);
   return lattice_points_inside(body.mesh, spacing);
 }
 
@@ -81,11 +103,11 @@ void check_fits_period(const std::vector<Vec3>& positions, double spacing, const
     const double count = std::max(1.0, std::round(period / spacing));
     const std::string axis(1, static_cast<char>('x' + a));
     if (excess > 0.75 * spacing) {
-      throw SettingsError(name + " is longer along " + axis + " than the period of " + std::to_string(period) + " m");
+      throw SettingsError(name + " is longer along " + axis + " than the period of " + number_text(period) + " m");
     }
-    throw SettingsError(name + " fills the period of " + std::to_string(period) + " m along " + axis +
-                        ", which is no whole number of spacings of " + std::to_string(spacing) +
-                        " m; choose a spacing of " + std::to_string(period / count) + " m, or another period");
+    throw SettingsError(name + " fills the period of " + number_text(period) + " m along " + axis +
+                        ", which is no whole number of spacings of " + number_text(spacing) +
+                        " m; choose a spacing of " + number_text(period / count, 10) + " m, or another period");
   }
 }
 
@@ -107,7 +129,7 @@ std::vector<FluidPoint> fill_bodies(const std::vector<FluidBody>& bodies, double
     const std::string name = "fluid body " + std::to_string(b + 1);
     std::vector<Vec3> positions = fill(bodies[b], spacing, name);
     if (positions.empty()) {
-      throw SettingsError(name + " holds no particle: it is smaller than the spacing of " + std::to_string(spacing) +
+      throw SettingsError(name + " holds no particle: it is smaller than the spacing of " + number_text(spacing, 4) +
                           " m");
     }
     check_fits_period(positions, spacing, periodic, name);

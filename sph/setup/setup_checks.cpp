@@ -16,6 +16,9 @@ namespace flowskin::sph {
 
 namespace {
 
+// Coordinates of meshes (m): beyond it what doubles hold is no longer fine enough for fluid beside the mesh.
+constexpr double kFarthestVertex = 1e9;
+
 std::string in_words(const Range& range, std::string_view unit) {
   const std::string end = unit.empty() ? "" : " " + std::string(unit);
   return (range.open_min ? "more than " : "") + number_text(range.min) + (range.open_min ? " and at most " : " to ") +
@@ -71,6 +74,11 @@ void check_mesh(const TriangleMesh& mesh, const std::string& name) {
   const int count = static_cast<int>(mesh.positions.size());
   for (const Vec3& p : mesh.positions) {
     if (!p.allFinite()) throw SettingsError(name + ": its mesh has a vertex that is not a finite number");
+    if (!(p.cwiseAbs().maxCoeff() <= kFarthestVertex)) {
+      throw SettingsError(name + ": its mesh has a vertex at (" + number_text(p.x(), 4) + ", " + number_text(p.y(), 4) +
+                          ", " + number_text(p.z(), 4) + ") m, farther out than " + number_text(kFarthestVertex, 4) +
+                          " m: does it stray?");
+    }
   }
   for (const auto& t : mesh.triangles) {
     for (const int v : t) {

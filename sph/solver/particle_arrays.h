@@ -1,6 +1,8 @@
 // The fluid particles, one array a quantity, kept in the order of a space-filling curve.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -62,11 +64,22 @@ struct ParticleArrays {
   void visit(Archive& archive) {
     for_each([&](auto& values) { archive(values); });
   }
-  /// True where the arrays fit together.
-  bool is_consistent() {
+  /// True where the arrays fit together, those that some set-ups need are there just where they are needed, and the
+  /// particles are somewhere.
+  bool is_consistent(bool with_shifts, bool with_fluids, bool with_viscosities) {
     bool same = true;
-    for_each([&](auto& values) { same = same && (values.size() == size() || values.empty()); });
-    return same;
+    for_each([&](auto& values) {
+      const void* array = &values;
+      const bool wanted = (array != &shifts || with_shifts) && (array != &fluids || with_fluids) &&
+                          (array != &viscosities || with_viscosities);
+      same = same && values.size() == (wanted ? size() : 0);
+    });
+    const auto finite = [](const auto& vectors) {
+      return std::all_of(vectors.begin(), vectors.end(), [](const auto& v) { return v.allFinite(); });
+    };
+    const auto placed = [](const FluidPack& p) { return std::isfinite(p.x + p.y + p.z + p.vx + p.vy + p.vz); };
+    return same && finite(positions) && finite(velocities) && finite(rest_positions) && finite(shifts) &&
+           std::all_of(packs.begin(), packs.end(), placed);
   }
 
   std::size_t memory_bytes() {

@@ -12,6 +12,7 @@
 #include "sph/bodies/fluid_bodies.h"
 #include "sph/bodies/fluid_sinks.h"
 #include "sph/setup/automatic_values.h"
+#include "sph/setup/domain_checks.h"
 #include "sph/setup/errors.h"
 #include "sph/setup/setup_checks.h"
 #include "sph/viscosity/rheology.h"
@@ -78,6 +79,7 @@ SolverImpl::SolverImpl(SimulationSetup setup)
     emitters_.emplace_back(setup.emitters[e], settings_.spacing, "emitter " + std::to_string(e + 1));
     setup.emitters[e].center = emitters_.back().outlet().center();
   }
+  warnings_ = check_inside_domain(settings_, points, setup.bodies.size(), emitters_);
   sinks_ = std::move(setup.sinks);
   for (Sink& sink : sinks_) sink.box = sink.shape == Sink::Shape::mesh ? bounding_box(sink.mesh) : sink.box;
   settings_ = complete_settings(setup, points, boundary_.greatest_speed());
@@ -92,6 +94,7 @@ SolverImpl::SolverImpl(SimulationSetup setup)
   for (int a = 0; a < 3; ++a) {
     if (periodic_.along(a)) origin_[a] = 0.5 * (settings_.domain.min[a] + settings_.domain.max[a]);
   }
+  check_near_origin(settings_, points, origin_);
   boundary_.place_at_origin(origin_);
   // Where all axes are periodic there is no place for what is hidden (PairCoefficients::away).
   sees_walls_ = boundary_.has_thin() && !(periodic_.along(0) && periodic_.along(1) && periodic_.along(2));
@@ -227,7 +230,7 @@ void SolverImpl::kick_and_drift(double dt) {
       kept_out += hold.kept_out;
       squeezed += hold.squeezed_through;
       fill_pack(i, dt);
-      outside = outside || outside_domain(particles_.positions[i]);
+      outside = outside || outside_domain(settings_, particles_.positions[i]);
     }
   }
   statistics_.wall_crossings += crossings;
@@ -269,16 +272,6 @@ bool SolverImpl::some_to_drain() const {
                                         [&](const Vec3& p) { return in_open_sink(sinks_, p, time_); });
 }
 
-bool SolverImpl::outside_domain(const Vec3& p) const {
-  const Box& box = settings_.domain;
-  if (box.min == box.max) return false;
-  for (int a = 0; a < 3; ++a) {
-    if (settings_.periodic[a] || box.min[a] == box.max[a]) continue;
-    if (p[a] < box.min[a] || p[a] > box.max[a]) return true;
-  }
-  return false;
-}
-
 void SolverImpl::wrap_particles() {
 #pragma omp parallel for schedule(static) num_threads(threads_for(particles_.size()))
   for (std::size_t i = 0; i < particles_.size(); ++i) {
@@ -293,7 +286,7 @@ void SolverImpl::wrap_particles() {
 void SolverImpl::remove_lost() {
   std::vector<std::uint32_t> kept;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (outside_domain(particles_.positions[i])) {
+    if (outside_domain(settings_, particles_.positions[i])) {
       ++statistics_.left_domain;
     } else if (in_open_sink(sinks_, particles_.positions[i], time_)) {
       ++statistics_.drained;
@@ -520,11 +513,27 @@ void SolverImpl::save(StateWriter& writer) const {
   const_cast<SolverImpl*>(this)->visit(writer, places);
 }
 
+bool SolverImpl::is_consistent(const std::vector<Eigen::Vector3f>& places) {
+  const std::size_t count = particles_.size();
+  std::vector<std::uint64_t> ids = particles_.ids;
+  std::sort(ids.begin(), ids.end());
+  const bool named = std::adjacent_find(ids.begin(), ids.end()) == ids.end() && (ids.empty() || ids.back() < next_id_);
+  const auto is_finite = [](const Eigen::Vector3f& p) { return p.allFinite(); };
+  const auto is_known = [&](std::uint8_t fluid) { return fluid < fluids_.size(); };
+  // Nothing is due any more that an emitter should have poured.
+  const auto has_poured = [&](const JetEmitter& emitter) { return emitter.next_time() >= (1 - 1e-9) * time_; };
+  const double built = boundary_.build_time();
+  return particles_.is_consistent(drifts(settings_), fluids_.size() > 1, !fluids_.empty()) && named &&
+         places.size() == count && std::all_of(places.begin(), places.end(), is_finite) &&
+         std::all_of(particles_.fluids.begin(), particles_.fluids.end(), is_known) &&
+         std::all_of(emitters_.begin(), emitters_.end(), has_poured) && std::isfinite(time_) && built >= 0 &&
+         built <= time_ && greatest_speed_ >= 0 && greatest_acceleration_ >= 0;
+}
+
 void SolverImpl::restore(StateReader& reader) {
   std::vector<Eigen::Vector3f> places;
   visit(reader, places);
-  if (!particles_.is_consistent() || places.size() != particles_.size())
-    throw StateError("the saved state of the solver contradicts itself");
+  if (!is_consistent(places)) throw StateError("the saved state of the solver contradicts itself");
   boundary_.move_to(boundary_.build_time());
   build_lists(std::span<const Eigen::Vector3f>(places));
   boundary_.move_to(time_);

@@ -33,6 +33,7 @@ class SolverImpl {
   const BoundaryParticles& boundary() const { return boundary_; }
   const SolverSettings& settings() const { return settings_; }
   const SolverStatistics& statistics() const { return statistics_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
   const PeriodicBox& periodic() const { return periodic_; }
   double particle_mass() const { return mass_; }
   std::size_t memory_bytes() const;
@@ -56,6 +57,9 @@ class SolverImpl {
     if (wall_drag_.active()) archive(wall_drag_.wet_since());
   }
 
+  /// Whether what was restored fits together and to the set-up.
+  bool is_consistent(const std::vector<Eigen::Vector3f>& places);
+
   TimeStepReport choose_step(double limit) const;
   /// Implicit viscosity: the velocities at the end of the step, all forces included.
   void kick_implicitly(double dt);
@@ -67,7 +71,6 @@ class SolverImpl {
   void fill_pack(std::size_t i, double dt);
   void add_particle(const Vec3& position, const Vec3& velocity, const Vec3& rest_position, std::size_t fluid);
   void pour_emitters();
-  bool outside_domain(const Vec3& p) const;
   bool some_to_drain() const;
   /// Takes out what has left the domain or is in a sink.
   void remove_lost();
@@ -118,6 +121,7 @@ class SolverImpl {
 
   ImplicitViscosity implicit_viscosity_;
   double greatest_speed_ = 0, greatest_acceleration_ = 0;
+  std::vector<std::string> warnings_;
   bool some_outside_ = false;
   SolverStatistics statistics_;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sph/neighbors/hilbert_order.h"
+#include "sph/walls/wall_reach.h"
 
 namespace flowskin::sph {
 
@@ -59,17 +60,23 @@ BoundaryParticles::BoundaryParticles(const std::vector<Boundary>& boundaries, co
       volumes_.push_back(wall.volume_factor * volume);
     }
   };
+  const Box reach = wall_reach(settings);
+  WallCount count(settings.spacing, sample_spacing_);
+  for (std::size_t b = 0; b < boundaries.size(); ++b) {
+    const bool moves = boundaries[b].motion.moves();
+    count.add(periodic.clip(boundaries[b].mesh), moves ? everywhere() : reach, "boundary " + std::to_string(b + 1));
+  }
   std::vector<TriangleMesh> resting;
   for (const Boundary& boundary : boundaries) {
     greatest_speed_ = std::max(greatest_speed_, boundary.surface_velocity.norm());
     if (boundary.motion.moves()) continue;
     resting.push_back(periodic.clip(boundary.mesh));
-    append_samples(sample_surface(resting.back(), sample_spacing_, periodic), boundary);
+    append_samples(sample_surface(resting.back(), sample_spacing_, periodic, reach), boundary);
   }
   append_volumes(0);
   if (!resting.empty()) {
-    guard_ = WallGuard(resting, 2 * settings.spacing, periodic);
-    thin_ = ThinWalls(resting, guard_, settings.spacing, list_reach(settings), periodic);
+    guard_ = WallGuard(resting, 2 * settings.spacing, periodic, reach);
+    thin_ = ThinWalls(resting, guard_, settings.spacing, list_reach(settings), periodic, reach);
     guard_.find_gaps(positions_, sample_spacing_, settings.spacing, periodic);
   }
   for (const Boundary& boundary : boundaries) {

@@ -19,8 +19,8 @@ constexpr double fill_resolution = 0.3;   // in spacings: steps in which gaps ar
 
 class SurfaceSampler {
  public:
-  SurfaceSampler(const TriangleMesh& mesh, double spacing, const PeriodicBox& periodic)
-      : mesh_(mesh), spacing_(spacing), periodic_(periodic), grid_(spacing) {
+  SurfaceSampler(const TriangleMesh& mesh, double spacing, const PeriodicBox& periodic, const Box& reach)
+      : mesh_(mesh), spacing_(spacing), periodic_(periodic), reach_(reach), grid_(spacing) {
     for (const auto& t : mesh.triangles) {
       const Vec3 normal = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
       const double length = normal.norm();
@@ -41,6 +41,7 @@ class SurfaceSampler {
 
   void add(const Vec3& place, double distance) {
     const Vec3 p = periodic_.wrap(place);
+    if (!contains(reach_, p)) return;
     if (has_near_image(grid_, p, distance * spacing_, periodic_)) return;
     grid_.insert(p);
     samples_.push_back(p);
@@ -95,12 +96,51 @@ class SurfaceSampler {
       add(edge.b, 0.5);
     }
     for (const auto& [key, edge] : edges) {
-      const int pieces = static_cast<int>(std::lround((edge.b - edge.a).norm() / spacing_));
-      for (int k = 1; k < pieces; ++k) add(edge.a + (edge.b - edge.a) * (double(k) / pieces), 0.5);
+      const double pieces = std::round((edge.b - edge.a).norm() / spacing_);
+      const auto [first, last] = shares_in_reach(edge.a, edge.b);
+      const double end = std::min(pieces - 1, std::ceil(last * pieces) + 1);
+      for (double k = std::max(1.0, std::floor(first * pieces) - 1); k <= end; ++k)
+        add(edge.a + (edge.b - edge.a) * (k / pieces), 0.5);
     }
   }
 
-  // Calls visit(p) for the points of a lattice, fixed in space, that lie in triangle t (edges included).
+  // From which share of the way from a to b to which it lies in reach; the first is greater where it passes by.
+  std::pair<double, double> shares_in_reach(const Vec3& a, const Vec3& b) const {
+    double first = 0, last = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double way = b[axis] - a[axis];
+      if (way == 0) continue;
+      const double low = (reach_.min[axis] - a[axis]) / way, high = (reach_.max[axis] - a[axis]) / way;
+      first = std::max(first, std::min(low, high));
+      last = std::min(last, std::max(low, high));
+    }
+    return {first, last};
+  }
+
+  // A triangle, and the part of it in reach, in the plane of its lattice.
+  struct FlatTriangle {
+    Eigen::Vector2d a, b, c;
+    std::vector<Eigen::Vector2d> part;
+    double size = 0;  // an upper bound of its edges
+  };
+
+  // The interval of v in which the part of a triangle in reach may lie where u is within `width` of `at`.
+  static std::pair<double, double> interval(const FlatTriangle& flat, double at, double width) {
+    double low = 1e300, high = -1e300;
+    const auto include = [&](double v) { low = std::min(low, v), high = std::max(high, v); };
+    for (std::size_t k = 0; k < flat.part.size(); ++k) {
+      const Eigen::Vector2d &p = flat.part[k], &q = flat.part[(k + 1) % flat.part.size()];
+      if (std::abs(p.x() - at) <= width) include(p.y());
+      for (const double side : {at - width, at + width}) {
+        if ((p.x() < side) != (q.x() < side)) include(p.y() + (side - p.x()) / (q.x() - p.x()) * (q.y() - p.y()));
+      }
+    }
+    return {low, high};
+  }
+
+  // Calls visit(p) for the points of a lattice, fixed in space, that lie in triangle t (edges included), as far as it
+  // is in reach. Goes only where the triangle is: the box around one that is long and thin may be a thousand times its
+  // area.
   template <typename Visit>
   void for_each_lattice_point(std::size_t t, double step, Visit visit) const {
     const Vec3& n = normals_[t];
@@ -111,20 +151,35 @@ class SurfaceSampler {
                &c = corner(mesh_.triangles[t], 2);
     const double step_u = fitted(step, u), step_v = fitted(step, v);
     const auto flat = [&](const Vec3& p) { return Eigen::Vector2d(p.dot(u), p.dot(v)); };
-    const Eigen::Vector2d a2 = flat(a), b2 = flat(b), c2 = flat(c);
-    const Eigen::Vector2d low = a2.cwiseMin(b2).cwiseMin(c2), high = a2.cwiseMax(b2).cwiseMax(c2);
+    FlatTriangle triangle{flat(a), flat(b), flat(c), {}, 0};
+    for (const Vec3& p : clip({a, b, c}, reach_)) triangle.part.push_back(flat(p));
+    if (triangle.part.empty()) return;
+    visit_rows(triangle, step_u, step_v,
+               [&, above_origin = Vec3(n * n.dot(a))](double x, double y) { visit(above_origin + x * u + y * v); });
+  }
+
+  template <typename Visit>
+  static void visit_rows(FlatTriangle& t, double step_u, double step_v, Visit visit) {
     const auto cross = [](const Eigen::Vector2d& p, const Eigen::Vector2d& q) { return p.x() * q.y() - p.y() * q.x(); };
-    const double area2 = cross(b2 - a2, c2 - a2), tolerance = 1e-9;
-    const Vec3 above_origin = n * n.dot(a);
+    const double area2 = cross(t.b - t.a, t.c - t.a), tolerance = 1e-9;
     const double small = 1e-6;  // so that a lattice line on the triangle's edge counts as inside
-    for (auto i = std::llround(std::ceil(low.x() / step_u - small));
-         i <= std::llround(std::floor(high.x() / step_u + small)); ++i) {
-      for (auto j = std::llround(std::ceil(low.y() / step_v - small));
-           j <= std::llround(std::floor(high.y() / step_v + small)); ++j) {
-        const Eigen::Vector2d p(static_cast<double>(i) * step_u, static_cast<double>(j) * step_v);
-        const double wa = cross(b2 - p, c2 - p) / area2, wb = cross(c2 - p, a2 - p) / area2;
+    Eigen::Vector2d low = t.part[0], high = low;
+    for (const Eigen::Vector2d& p : t.part) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    t.size = (t.b - t.a).norm() + (t.c - t.a).norm();
+    // What counts as inside reaches three tolerances of the size beyond the edges; a step more is safe from rounding.
+    const double width = small * step_u + 1e-8 * t.size;
+    const auto i_end = std::llround(std::floor(high.x() / step_u + small));
+    for (auto i = std::llround(std::ceil(low.x() / step_u - small)); i <= i_end; ++i) {
+      const double x = static_cast<double>(i) * step_u;
+      const auto [first, last] = interval(t, x, width);
+      if (first > last) continue;
+      const auto begin = std::max(std::ceil(low.y() / step_v - small), std::floor((first - width) / step_v) - 1);
+      const auto end = std::min(std::floor(high.y() / step_v + small), std::ceil((last + width) / step_v) + 1);
+      for (auto j = std::llround(begin); j <= std::llround(end); ++j) {
+        const Eigen::Vector2d p(x, static_cast<double>(j) * step_v);
+        const double wa = cross(t.b - p, t.c - p) / area2, wb = cross(t.c - p, t.a - p) / area2;
         if (wa < -tolerance || wb < -tolerance || 1 - wa - wb < -tolerance) continue;
-        visit(above_origin + p.x() * u + p.y() * v);
+        visit(p.x(), p.y());
       }
     }
   }
@@ -141,6 +196,7 @@ class SurfaceSampler {
   const TriangleMesh& mesh_;
   double spacing_;
   const PeriodicBox& periodic_;
+  const Box& reach_;
   PointGrid grid_;
   std::vector<Vec3> normals_;  // zero for triangles without area
   std::vector<Vec3> samples_;
@@ -158,8 +214,9 @@ struct PositionCloud {
 
 }  // namespace
 
-std::vector<Vec3> sample_surface(const TriangleMesh& mesh, double spacing, const PeriodicBox& periodic) {
-  return SurfaceSampler(mesh, spacing, periodic).run();
+std::vector<Vec3> sample_surface(const TriangleMesh& mesh, double spacing, const PeriodicBox& periodic,
+                                 const Box& reach) {
+  return SurfaceSampler(mesh, spacing, periodic, reach).run();
 }
 
 std::vector<double> boundary_volumes(const std::vector<Vec3>& positions, KernelType kernel, double support_radius,

@@ -130,7 +130,7 @@ bool is_hidden(std::vector<Cut>& cuts) {
 }  // namespace
 
 ThinWalls::ThinWalls(const std::vector<TriangleMesh>& meshes, const WallGuard& guard, double spacing, double reach,
-                     const PeriodicBox& periodic)
+                     const PeriodicBox& periodic, const Box& place)
     : reach_(reach) {
   std::vector<TriangleMesh> thin;
   for (const TriangleMesh& mesh : meshes) {
@@ -147,7 +147,7 @@ ThinWalls::ThinWalls(const std::vector<TriangleMesh>& meshes, const WallGuard& g
     if (!part.triangles.empty()) thin.push_back(std::move(part));
   }
   if (thin.empty()) return;
-  guard_ = WallGuard(thin, 2 * spacing, periodic);
+  guard_ = WallGuard(thin, 2 * spacing, periodic, place);
   // A cluster reaches 1.5 spacings from its middle along each axis, its lists as far again as they reach.
   cells_ = guard_.cells_within(1.5 * spacing + reach);
 }

@@ -20,8 +20,9 @@ class ThinWalls {
   /// @param guard of all triangles of the meshes
   /// @param spacing of the fluid (m)
   /// @param reach of the fluid's lists (m)
+  /// @param place where the walls matter
   ThinWalls(const std::vector<TriangleMesh>& meshes, const WallGuard& guard, double spacing, double reach,
-            const PeriodicBox& periodic);
+            const PeriodicBox& periodic, const Box& place = everywhere());
 
   bool empty() const { return guard_.triangle_count() == 0; }
   /// Whether such a wall may lie within reach of a cluster of particles around the point, three spacings long.

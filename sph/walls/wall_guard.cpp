@@ -8,7 +8,8 @@
 
 namespace flowskin::sph {
 
-WallGuard::WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, const PeriodicBox& periodic)
+WallGuard::WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, const PeriodicBox& periodic,
+                     const Box& reach)
     : cell_size_(cell_size) {
   Vec3 low = Vec3::Constant(1e300);
   const Vec3 margin = Vec3::Constant(2 * cell_size);
@@ -30,8 +31,10 @@ WallGuard::WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, 
   // A triangle is entered in every cell of its box that its plane comes near.
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     const Triangle& tri = triangles_[t];
-    const auto first = cell_of(tri.a.cwiseMin(tri.b).cwiseMin(tri.c), cell_size_);
-    const auto last = cell_of(tri.a.cwiseMax(tri.b).cwiseMax(tri.c), cell_size_);
+    const Box box{tri.a.cwiseMin(tri.b).cwiseMin(tri.c), tri.a.cwiseMax(tri.b).cwiseMax(tri.c)};
+    if (!box.overlaps(reach)) continue;
+    const auto first = cell_of(box.min.cwiseMax(reach.min), cell_size_);
+    const auto last = cell_of(box.max.cwiseMin(reach.max), cell_size_);
     for (auto x = first[0]; x <= last[0]; ++x) {
       for (auto y = first[1]; y <= last[1]; ++y) {
         for (auto z = first[2]; z <= last[2]; ++z) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sph/geometry/clip.h"
 #include "sph/geometry/periodic_box.h"
 #include "sph/geometry/triangle_mesh.h"
 
@@ -30,7 +31,9 @@ class WallGuard {
   WallGuard() = default;
   /// @param cell_size edge of the grid's cells (m); about two spacings
   /// @param periodic walls are entered with their images that come within two cells of the box
-  WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, const PeriodicBox& periodic = {});
+  /// @param reach triangles are found in this box only
+  WallGuard(const std::vector<TriangleMesh>& meshes, double cell_size, const PeriodicBox& periodic = {},
+            const Box& reach = everywhere());
 
   /// Replaces `found` by the triangles that may touch the box, in ascending order.
   void query(const Vec3& box_min, const Vec3& box_max, std::vector<std::uint32_t>& found) const;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <cstring>
 #include <functional>
 #include <string>
 
@@ -245,6 +246,44 @@ TEST(RestartErrors, FasterSoundAfterwardsIsAllowed) {
   fast.advance_to(0.1);
   EXPECT_GT(fast.settings().speed_of_sound, 1.9 * slow.settings().speed_of_sound);
   EXPECT_LT(fast.statistics().last_step.acoustic, 0.6 * slow.statistics().last_step.acoustic);
+}
+
+/// Whatever stands in a state: it is refused, or what follows stays in its arrays (sanitizers look at this test).
+TEST(Restart, AlteredStatesAreRefusedOrHarmless) {
+  SimulationSetup setup = block_setup(0.05, {0.05, 0.1, 0.05}, {0.15, 0.2, 0.15});
+  setup.settings.wall_drag = 1;
+  setup.settings.xsph = 0.1;
+  setup.settings.max_speed = 2;
+  setup.boundaries.push_back({closed_box({0, 0, 0}, {0.3, 0.6, 0.3}), 0.5});
+  Emitter emitter;
+  emitter.center = {0.15, 0.4, 0.15};
+  emitter.radius = 0.05;
+  emitter.speed = 1;
+  setup.emitters = {emitter};
+  Solver first(setup);
+  first.advance_to(0.02);
+  const std::string bytes = saved(first);
+  int refused = 0, taken = 0;
+  Solver solver(setup);
+  for (std::size_t at = 0; at + 8 <= bytes.size(); at += 4) {
+    for (const std::uint64_t value : {std::uint64_t{0}, std::uint64_t{3}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+      std::string altered = bytes;
+      std::memcpy(altered.data() + at, &value, 8);
+      StateReader reader(altered);
+      try {
+        solver.restore(reader);
+        ++taken;
+        solver.step(1e-4);
+      } catch (const StateError&) {
+        ++refused;
+      } catch (const BlowUpError&) {
+      }
+    }
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_GT(taken, 100);
+  restore(solver, bytes);
+  EXPECT_EQ(shown(solver), shown(first));
 }
 
 }  // namespace
