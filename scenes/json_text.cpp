@@ -131,7 +131,9 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
   void fail(std::size_t offset, const std::string& message) {
     const TextPlace place = place_in_text(text_, offset);
-    error = fmt::format("{}:{}:{}: {}", name_, place.line, place.column, message);
+    constexpr std::size_t longest = 500;  // the parser repeats whole texts
+    error = fmt::format("{}:{}:{}: {}{}", name_, place.line, place.column, message.substr(0, longest),
+                        message.size() > longest ? "..." : "");
   }
 
   JsonNode* add(JsonNode::Type type, std::size_t offset) {
@@ -192,6 +194,11 @@ JsonNode parse_json(const std::string& text, const std::string& name) {
   return std::move(builder.root);
 }
 
+std::string shortened(const std::string& text) {
+  constexpr std::size_t longest = 120;
+  return text.size() > longest ? text.substr(0, longest) + "..." : text;
+}
+
 std::string describe(const JsonNode& node) {
   switch (node.type) {
     case JsonNode::Type::null:
@@ -199,9 +206,9 @@ std::string describe(const JsonNode& node) {
     case JsonNode::Type::boolean:
       return node.boolean ? "true" : "false";
     case JsonNode::Type::number:
-      return "the number " + node.text;
+      return "the number " + shortened(node.text);
     case JsonNode::Type::text:
-      return "the text " + quote_json(node.text);
+      return "the text " + quote_json(shortened(node.text));
     case JsonNode::Type::list:
       return fmt::format("a list of {}", node.children.size());
     case JsonNode::Type::object:

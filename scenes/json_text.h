@@ -37,6 +37,9 @@ JsonNode parse_json(const std::string& text, const std::string& name);
 /// What a value is, in words for messages: `the text "abc"`, `the number -1`, `a list of 2`.
 std::string describe(const JsonNode& node);
 
+/// A key or value for messages: the start of one that is long.
+std::string shortened(const std::string& text);
+
 /// A text as JSON, quotes included; bytes that are no UTF-8 are replaced.
 std::string quote_json(const std::string& text);
 

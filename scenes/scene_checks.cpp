@@ -9,6 +9,7 @@
 
 #include "common/errors.h"
 #include "scenes/io/obj_reader.h"
+#include "scenes/io/read_bytes.h"
 #include "scenes/nearest_name.h"
 
 namespace flowskin::scenes {
@@ -112,6 +113,8 @@ void check_periods(const Scene& scene, Checker& checker) {
 }
 
 void check_fluids(const Scene& scene, Checker& checker) {
+  checker.require(scene.fluids.size() <= 255, "fluids", "has more than 255 entries");
+  if (scene.fluids.size() > 255) return;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < scene.fluids.size(); ++i) {
     const std::string& name = scene.fluids[i].name;
@@ -120,7 +123,6 @@ void check_fluids(const Scene& scene, Checker& checker) {
                     fmt::format("\"{}\" is that of an earlier fluid; give each one its own", name));
     names.push_back(name);
   }
-  checker.require(names.size() <= 255, "fluids", "has more than 255 entries");
   const auto known = [&](const std::string& list, std::size_t i, const std::string& name) {
     const std::string there =
         names.empty() ? "there are no fluids" : "fluids has " + fmt::format("{}", fmt::join(names, ", "));
@@ -202,7 +204,7 @@ void load_mesh(const Scene& scene, const MeshPlacement& placement, const std::st
                sph::TriangleMesh& mesh, Checker& checker) {
   const std::filesystem::path file = absolute_name(scene.directory, placement.file);
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
+  if (std::filesystem::status(file, error).type() == std::filesystem::file_type::not_found) {
     checker.require(false, list, i, "file",
                     fmt::format("names {}, which does not exist{}", file.string(), near_file(file)));
     return;
@@ -219,9 +221,11 @@ void load_mesh(const Scene& scene, const MeshPlacement& placement, const std::st
 std::string absolute_name(const std::string& directory, const std::string& file) {
   if (file.empty()) return file;
   const std::filesystem::path path(file);
-  return (path.is_absolute() ? path : std::filesystem::absolute(std::filesystem::path(directory) / path))
-      .lexically_normal()
-      .string();
+  if (path.is_absolute()) return path.lexically_normal().string();
+  const std::filesystem::path relative = std::filesystem::path(directory) / path;
+  std::error_code no_current_folder;  // then the name stays relative, and opening it says what is wrong
+  const std::filesystem::path absolute = std::filesystem::absolute(relative, no_current_folder);
+  return (no_current_folder ? relative : absolute).lexically_normal().string();
 }
 
 void check_consistency(const Scene& scene, const JsonNode& root, Problems& problems) {
@@ -257,11 +261,14 @@ void load_files(Scene& scene, const JsonNode& root, Problems& problems) {
   const std::string& image = scene.texture.image;
   if (image != "checker" && image != "marble") {
     const std::string file = absolute_name(scene.directory, image);
-    std::error_code error;
-    std::string near = did_you_mean(image, {"checker", "marble"});
-    if (near.empty()) near = near_file(file);
-    checker.require(std::filesystem::is_regular_file(file, error), "texture.image",
-                    fmt::format("is neither checker nor marble nor an image file: there is no file {}{}", file, near));
+    try {
+      require_regular_file(file);
+    } catch (const InputError& problem) {
+      std::string near = did_you_mean(image, {"checker", "marble"});
+      if (near.empty()) near = near_file(file);
+      checker.require(false, "texture.image",
+                      fmt::format("is neither checker nor marble nor an image file: {}{}", problem.what(), near));
+    }
   }
 }
 

@@ -1,26 +1,32 @@
 #include "scenes/scene_file.h"
 
-#include <fstream>
-#include <iterator>
+#include <cstdint>
 
 #include "common/errors.h"
+#include "scenes/io/read_bytes.h"
 #include "scenes/scene_checks.h"
 #include "scenes/schema/schema.h"
 
 namespace flowskin::scenes {
 namespace {
 
+/// Far beyond any scene: a million explicit particles take 60 MB.
+constexpr std::uintmax_t most_bytes = 512000000;
+
 std::string read_text(const std::filesystem::path& file) {
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) throw InputError(file.string() + ": there is no such scene file");
-  if (std::filesystem::is_directory(file, error)) {
-    throw InputError(file.string() + ": this is a folder; expected a scene file (JSON)");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad())
-    throw InputError(file.string() + ": the file cannot be read; is it yours to read?");
-  return text;
+  const auto type = std::filesystem::status(file, error).type();
+  if (type == std::filesystem::file_type::not_found) throw InputError(file.string() + ": there is no such scene file");
+  if (type == std::filesystem::file_type::directory)
+    throw InputError(file.string() + ": is not a regular file: this is a folder; expected a scene file (JSON)");
+  return read_bytes(file, most_bytes);
+}
+
+std::string absolute_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(folder.empty() ? "." : folder, error);
+  if (error) throw InputError("the current folder cannot be found (was it removed?): " + error.message());
+  return absolute.lexically_normal().string();
 }
 
 /// File names absolute, so that the written scene means the same wherever it stands.
@@ -42,7 +48,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
   const JsonNode root = parse_json(text, name);
   Problems problems(name, text);
   Scene scene;
-  scene.directory = std::filesystem::absolute(directory.empty() ? "." : directory).lexically_normal().string();
+  scene.directory = absolute_folder(directory);
   KeyTable keys;
   add_scene_keys(keys, scene);
   read_object(root, keys, "", problems);

@@ -17,6 +17,12 @@
 namespace flowskin::scenes {
 namespace {
 
+/// Of positions (m) and velocities (m/s): map coordinates and light are within it, and nothing that can be tracked is
+/// beyond.
+constexpr double largest_value = 1e9;
+/// What is written is single precision.
+constexpr double largest_density = 1e30;
+
 using Column = std::vector<double>;
 using Names = std::initializer_list<const char*>;
 /// Columns by plain name.
@@ -74,13 +80,16 @@ Triple find_vector(const Columns& columns, Names names, const std::string& what,
 
 /// Three columns as vectors; `fallback` where they are not there.
 std::vector<Vec3> vectors(const Triple& columns, std::vector<Vec3> fallback, const std::string& what,
-                          const std::string& name) {
+                          const std::string& unit, const std::string& name) {
   if (columns[0] == nullptr) return fallback;
   std::vector<Vec3> result(columns[0]->size());
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i] = Vec3((*columns[0])[i], (*columns[1])[i], (*columns[2])[i]);
     if (!result[i].allFinite())
       throw InputError(name + ", particle " + std::to_string(i + 1) + ": the " + what + " is not finite");
+    if (const double most = result[i].cwiseAbs().maxCoeff(); most > largest_value)
+      throw InputError(fmt::format("{}, particle {}: the {} has a component of {:.4g} {}, more than {:g}; is that so?",
+                                   name, i + 1, what, most, unit, largest_value));
   }
   return result;
 }
@@ -187,13 +196,14 @@ ParticleFile particles_from_table(const ParticleTable& table, const std::string&
   if (file.radius == 0) file.radius = table.radius;
   ParticleState& state = file.state;
   state.ids = particle_ids(ids, table.count, name);
-  state.positions = vectors(place, {}, "position", name);
-  state.velocities = vectors(velocity, std::vector<Vec3>(table.count, Vec3::Zero()), "velocity", name);
-  state.rest_positions = vectors(rest, state.positions, "rest position", name);
+  state.positions = vectors(place, {}, "position", "m", name);
+  state.velocities = vectors(velocity, std::vector<Vec3>(table.count, Vec3::Zero()), "velocity", "m/s", name);
+  state.rest_positions = vectors(rest, state.positions, "rest position", "m", name);
   state.densities = densities != nullptr ? *densities : Column(table.count, 0.0);
   for (std::size_t i = 0; i < state.densities.size(); ++i)
-    if (!std::isfinite(state.densities[i]))
-      throw InputError(name + ", particle " + std::to_string(i + 1) + ": the density is not finite");
+    if (!(std::abs(state.densities[i]) <= largest_density))
+      throw InputError(fmt::format("{}, particle {}: the density is {:.4g}; expected a number up to {:g}", name, i + 1,
+                                   state.densities[i], largest_density));
   if (file.has_ids) sort_by_id(state, name);
   return file;
 }

@@ -1,12 +1,20 @@
-// A whole file in memory.
+// A whole file in memory: the one place where inputs are opened.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 
 namespace flowskin::scenes {
 
-/// The bytes of `file`. @throws InputError where it is missing, a directory, or cannot be read.
-std::string read_bytes(const std::filesystem::path& file);
+/// @throws InputError where the input is missing or anything but a regular file (links are followed): pipes and devices
+/// may never end.
+void require_regular_file(const std::filesystem::path& file);
+
+/// The bytes of `file`. @throws InputError where it is no regular file, cannot be read, or has more bytes than `most`
+/// or than the machine has memory.
+std::string read_bytes(const std::filesystem::path& file,
+                       std::uintmax_t most = std::numeric_limits<std::uintmax_t>::max());
 
 }  // namespace flowskin::scenes

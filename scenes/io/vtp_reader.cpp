@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -28,6 +29,7 @@ constexpr std::array<std::pair<std::string_view, NumberType>, 10> vtp_types{{{"I
                                                                              {"Float32", NumberType::float32},
                                                                              {"Float64", NumberType::float64}}};
 constexpr std::uint64_t most_vtp_components = 1024;
+constexpr std::size_t most_tag_levels = 64;
 /// No file of this size exists; larger counts would overflow the arithmetic below.
 constexpr std::uint64_t most_points = std::uint64_t{1} << 40;
 
@@ -45,7 +47,7 @@ struct Array {
 class VtpParser {
  public:
   VtpParser(std::string_view bytes, const std::string& name)
-      : bytes_(bytes), head_(split_off_appended_data()), scanner_(head_, name) {}
+      : head_(split_off_appended_data(bytes, name)), scanner_(head_, name) {}
 
   ParticleTable parse() {
     XmlTag tag;
@@ -64,21 +66,25 @@ class VtpParser {
   }
 
  private:
-  /// The data after <AppendedData> may hold any byte: it is cut off before the tags are read.
-  std::string_view split_off_appended_data() {
-    const std::size_t tag = bytes_.find("<AppendedData");
-    if (tag == std::string_view::npos) return bytes_;
-    const std::size_t end = bytes_.find('>', tag);
-    if (end == std::string_view::npos) return bytes_;
-    appended_base64_ = bytes_.substr(tag, end - tag).find("raw") == std::string_view::npos;
-    const std::size_t underscore = bytes_.find('_', end);
-    if (underscore != std::string_view::npos) appended_ = bytes_.substr(underscore + 1);
-    has_appended_ = true;
-    return bytes_.substr(0, tag);
+  /// The data after <AppendedData> may hold any byte: it is cut off before the other tags are read.
+  std::string_view split_off_appended_data(std::string_view bytes, const std::string& name) {
+    XmlScanner scanner(bytes, name);
+    for (XmlTag tag; scanner.next(tag);) {
+      if (tag.name != "AppendedData") continue;
+      if (tag.closes) scanner.fail(tag.start, "<AppendedData> has no data: the file is truncated or damaged");
+      const std::string* encoding = tag.find("encoding");
+      appended_base64_ = encoding == nullptr || *encoding != "raw";
+      const std::size_t underscore = bytes.find('_', tag.end);
+      if (underscore != std::string_view::npos) appended_ = bytes.substr(underscore + 1);
+      has_appended_ = true;
+      return bytes.substr(0, tag.start);
+    }
+    return bytes;
   }
 
   void open(const XmlTag& tag) {
     if (!tag.closes) open_.push_back(tag.name);
+    if (open_.size() > most_tag_levels) scanner_.fail(tag.start, "tags are nested too deeply; this is no VTK XML file");
     if (tag.name == "VTKFile") {
       read_root(tag);
       if (has_appended_) open_.pop_back();  // its end was cut off with the data
@@ -94,6 +100,7 @@ class VtpParser {
   bool inside(std::string_view name) const { return std::find(open_.begin(), open_.end(), name) != open_.end(); }
 
   void read_root(const XmlTag& tag) {
+    if (has_root_) scanner_.fail(tag.start, "a second <VTKFile>: one file was expected");
     const auto value = [&tag](std::string_view name) { return tag.find(name) ? *tag.find(name) : std::string(); };
     const std::string type = value("type"), order = value("byte_order"), header = value("header_type");
     if (type.starts_with("P") && type != "PolyData")
@@ -114,6 +121,7 @@ class VtpParser {
       scanner_.fail(tag.start, compressor +
                                    " is not supported; write the file with zlib or without compression "
                                    "(ParaView: Compressor Type in the dialogue of Save Data)");
+    if (tag.closes) scanner_.fail(tag.start, "<VTKFile> closes itself: there are no particles in it");
     encoding_ = {order == "BigEndian", header == "UInt64", !compressor.empty()};
     has_root_ = true;
   }
@@ -238,7 +246,6 @@ class VtpParser {
     std::erase_if(table_.columns, [this](const auto& column) { return column.second.size() != table_.count; });
   }
 
-  std::string_view bytes_;
   std::string_view appended_;
   bool has_appended_ = false, appended_base64_ = false;
   std::string_view head_;
@@ -255,24 +262,47 @@ class VtpParser {
 
 ParticleTable parse_vtp(std::string_view bytes, const std::string& name) { return VtpParser(bytes, name).parse(); }
 
-std::vector<std::pair<double, std::filesystem::path>> parse_pvd(std::string_view bytes,
-                                                                const std::filesystem::path& file) {
+namespace {
+
+using PvdEntry = std::pair<double, std::filesystem::path>;
+
+PvdEntry entry_of(const XmlTag& tag, const std::filesystem::path& file, const XmlScanner& scanner) {
+  const std::string *time = tag.find("timestep"), *entry = tag.find("file");
+  double value = 0;
+  std::string_view rest = time ? std::string_view(*time) : std::string_view();
+  skip_space(rest);
+  const bool is_number = take_number(rest, value);
+  skip_space(rest);
+  if (entry == nullptr || entry->empty() || !is_number || !rest.empty())
+    scanner.fail(tag.start, "expected <DataSet timestep=\"TIME\" file=\"NAME\"/>");
+  if (!std::isfinite(value))
+    scanner.fail(tag.start, fmt::format("timestep=\"{}\": the time is not finite", time->substr(0, 40)));
+  if (entry->find('\0') != std::string::npos) scanner.fail(tag.start, "the name of the file has a zero byte");
+  const std::filesystem::path path(*entry);
+  return {value, path.is_absolute() ? path : file.parent_path() / path};
+}
+
+}  // namespace
+
+std::vector<PvdEntry> parse_pvd(std::string_view bytes, const std::filesystem::path& file) {
   const std::string name = file.string();
   XmlScanner scanner(bytes, name);
-  std::vector<std::pair<double, std::filesystem::path>> entries;
+  std::vector<PvdEntry> entries;
+  std::vector<std::string> open;
   bool is_collection = false;
   for (XmlTag tag; scanner.next(tag);) {
-    if (tag.name == "Collection") is_collection = true;
-    if (tag.name != "DataSet" || !tag.opens) continue;
-    const std::string *time = tag.find("timestep"), *entry = tag.find("file");
-    double value = 0;
-    std::string_view rest = time ? std::string_view(*time) : std::string_view();
-    if (entry == nullptr || !take_number(rest, value))
-      scanner.fail(tag.start, "expected <DataSet timestep=\"TIME\" file=\"NAME\"/>");
-    const std::filesystem::path path(*entry);
-    entries.emplace_back(value, path.is_absolute() ? path : file.parent_path() / path);
+    if (tag.opens && tag.name == "Collection") is_collection = true;
+    if (tag.opens && tag.name == "DataSet") {
+      if (!is_collection) scanner.fail(tag.start, "a <DataSet> before <Collection>; this is no ParaView collection");
+      entries.push_back(entry_of(tag, file, scanner));
+    }
+    if (tag.opens && !tag.closes) open.push_back(tag.name);
+    if (tag.closes && !tag.opens && !open.empty() && open.back() == tag.name) open.pop_back();
+    if (open.size() > most_tag_levels) scanner.fail(tag.start, "tags are nested too deeply");
   }
   if (!is_collection) scanner.fail(0, "expected <Collection>; this is no ParaView collection");
+  if (!open.empty())
+    scanner.fail(bytes.size(), fmt::format("<{}> is never closed: the file is truncated", open.back()));
   if (entries.empty()) scanner.fail(bytes.size(), "the collection names no files");
   return entries;
 }

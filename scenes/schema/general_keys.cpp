@@ -7,8 +7,8 @@ void add_general_keys(KeyTable& table, Scene& scene) {
   table.text("name", scene.name, "Name of the scene, for messages and titles.");
   table.text("description", scene.description, "What the scene shows.");
   table.natural("seed", scene.seed, "Seed of all random numbers.");
-  table.integer("frames", scene.frames, 1, 1000000, "", "Frames after the first one, which is frame 0 at time 0.");
-  table.number("frame_rate", scene.frame_rate, above(0, 1e5), "1/s", "Frames per second.");
+  table.integer("frames", scene.frames, 0, 1000000, "", "Frames after the first one, which is frame 0 at time 0.");
+  table.number("frame_rate", scene.frame_rate, at_least(1e-9, 1e5), "1/s", "Frames per second.");
 }
 
 void add_output_keys(KeyTable& table, OutputSpec& output) {

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_set>
 
 #include "common/errors.h"
 #include "scenes/nearest_name.h"
@@ -47,13 +49,11 @@ struct WrittenKey {
 /// `section` is "" or ends with a dot.
 void report_unknown_keys(const JsonNode& node, const std::vector<std::string>& paths, const std::string& section,
                          const std::string& object_path, Problems& problems) {
-  for (std::size_t i = 0; i < node.children.size(); ++i) {
-    const JsonNode& child = node.children[i];
+  std::unordered_set<std::string_view> seen;
+  for (const JsonNode& child : node.children) {
     const std::string path = section + child.key;
-    const std::string shown = join_path(object_path, path);
-    const bool twice = std::any_of(node.children.begin(), node.children.begin() + static_cast<std::ptrdiff_t>(i),
-                                   [&](const JsonNode& other) { return other.key == child.key; });
-    if (twice) {
+    const std::string shown = join_path(object_path, section + shortened(child.key));
+    if (!seen.insert(child.key).second) {
       problems.add(child.offset, shown + " stands here a second time; keep one of them");
       continue;
     }
@@ -62,7 +62,9 @@ void report_unknown_keys(const JsonNode& node, const std::vector<std::string>& p
     const bool is_section =
         std::any_of(paths.begin(), paths.end(), [&](const std::string& p) { return starts_with(p, inner); });
     if (!is_section) {
-      problems.add(child.offset, shown + ": there is no such key" + suggestion(child.key, section, paths));
+      // Nobody reads more of them, and near names take time to find.
+      const std::string near = problems.are_many() ? "" : suggestion(child.key, section, paths);
+      problems.add(child.offset, shown + ": there is no such key" + near);
     } else if (child.type != JsonNode::Type::object) {
       problems.add(child.offset, fmt::format("{} is {}; expected an object in braces", shown, describe(child)));
     } else {
@@ -119,12 +121,11 @@ void Problems::throw_if_any() const {
   auto sorted = list_;
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::string message;
-  constexpr std::size_t max_lines = 20;
-  for (std::size_t i = 0; i < std::min(sorted.size(), max_lines); ++i) {
+  for (std::size_t i = 0; i < std::min(sorted.size(), most_shown); ++i) {
     const TextPlace place = place_in_text(text_, sorted[i].first);
     message += fmt::format("{}{}:{}:{}: {}", i > 0 ? "\n" : "", file_, place.line, place.column, sorted[i].second);
   }
-  if (sorted.size() > max_lines) message += fmt::format("\n... and {} more", sorted.size() - max_lines);
+  if (sorted.size() > most_shown) message += fmt::format("\n... and {} more", sorted.size() - most_shown);
   throw InputError(message);
 }
 

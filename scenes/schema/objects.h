@@ -15,10 +15,14 @@ class Problems {
   Problems(std::string file, const std::string& text) : file_(std::move(file)), text_(text) {}
   void add(std::size_t offset, const std::string& message) { list_.emplace_back(offset, message); }
   std::size_t count() const { return list_.size(); }
+  /// More than are shown.
+  bool are_many() const { return list_.size() >= most_shown; }
   /// @throws InputError with one line a problem, where there is any.
   void throw_if_any() const;
 
  private:
+  static constexpr std::size_t most_shown = 20;
+
   std::string file_;
   const std::string& text_;
   std::vector<std::pair<std::size_t, std::string>> list_;

@@ -33,6 +33,8 @@ struct Kind {
 
 /// Coordinates and other signed quantities may be this large: far beyond any scene, small enough for squares and cubes.
 constexpr double max_coordinate = 1e6;
+/// Places of recorded particles may be as far out as map coordinates, and farther.
+constexpr double max_recorded_coordinate = 1e9;
 
 Kind<double> number(Range range);
 Kind<int> integer(int min, int max);

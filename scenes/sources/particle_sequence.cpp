@@ -18,6 +18,8 @@ namespace flowskin::scenes {
 namespace {
 
 constexpr double default_interval = 1.0 / 30;  // s
+/// Between files, by their times (s).
+constexpr double shortest_interval = 1e-9, longest_interval = 1e9;
 /// Times this near to whole multiples of the interval (in intervals) are taken for them: files hold them rounded.
 constexpr double even_tolerance = 1e-3;
 /// Frame rates this near to a whole number (relative) are taken for it.
@@ -43,6 +45,9 @@ class SequenceOpener {
   SequenceOpener(const RecordedSpec& spec, const std::string& directory) : spec_(spec), directory_(directory) {}
 
   ParticleSequence open() {
+    if (spec_.frame_interval > 0 && spec_.frame_interval < shortest_interval)
+      throw InputError(fmt::format("particles.recorded.frame_interval is {:.4g} s; expected 0 or at least {:g} s",
+                                   spec_.frame_interval, shortest_interval));
     if (!take_collection()) take_files();
     const ParticleTable table = read_particle_table(sequence_.files.front());
     sequence_.first = read_particles(sequence_.files.front());
@@ -128,6 +133,13 @@ class SequenceOpener {
     std::vector<double> intervals;
     for (std::size_t k = 1; k < times.size(); ++k) intervals.push_back(times[k] - times[k - 1]);
     double interval = intervals.empty() ? default_interval : quantile(intervals, 0.5);
+    if (!(interval >= shortest_interval && interval <= longest_interval &&
+          times.back() - times.front() <= longest_interval * 1e6))
+      throw InputError(
+          fmt::format("{}: the times from {:.4g} to {:.4g} s, usually {:.4g} s apart, are none that can be played "
+                      "({:.4g} to {:.4g} s apart); --time-step or --frame-rate gives others",
+                      sequence_.files.front().string(), times.front(), times.back(), interval, shortest_interval,
+                      longest_interval));
     const double rate = 1 / interval;
     if (std::round(rate) >= 1 && std::abs(rate - std::round(rate)) < whole_rate_tolerance * rate)
       interval = 1 / std::round(rate);

@@ -41,6 +41,9 @@ struct ParticleState {
   }
 };
 
+/// @throws StateError where the arrays of a state that was restored do not fit together.
+void check_restored(const ParticleState& state);
+
 /// What a source tells about itself in the log and in frames.csv; zero where it does not apply.
 struct SourceStatistics {
   std::uint64_t steps = 0;
@@ -73,6 +76,8 @@ class ParticleSource {
   /// Distance of neighbouring particles (m).
   virtual double spacing() const = 0;
   virtual SourceStatistics statistics() const = 0;
+  /// What of the scene is likely a slip.
+  virtual std::vector<std::string> warnings() const { return {}; }
   /// True where the sequence ends before `time` (s): a recorded sequence that is too short.
   virtual bool ends_before(double) const { return false; }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "common/errors.h"
@@ -59,6 +60,18 @@ Vec3 PrescribedSource::integrated(const Vec3& position, double time, double step
   const Vec3 k3 = motion_.local_velocity(position + 0.5 * step * k2, middle);
   const Vec3 k4 = motion_.local_velocity(position + step * k3, time + step);
   return position + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+}
+
+void PrescribedSource::restore(StateReader& reader) {
+  const std::size_t count = state_.ids.size(), grid_count = grid_positions_.size();
+  visit(reader);
+  check_restored(state_);
+  const auto is_finite = [](const Vec3& v) { return v.allFinite(); };
+  const bool on_time = grid_count == 0 || static_cast<double>(grid_step_) * motion_.integration_step() <=
+                                              state_.time * (1 + 1e-9) + motion_.integration_step();
+  if (state_.ids.size() != count || grid_positions_.size() != grid_count || !on_time ||
+      !std::all_of(grid_positions_.begin(), grid_positions_.end(), is_finite))
+    throw StateError("the saved state is one of other particles");
 }
 
 SourceStatistics PrescribedSource::statistics() const {

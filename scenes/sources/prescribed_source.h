@@ -19,7 +19,7 @@ class PrescribedSource : public ParticleSource {
   double spacing() const override { return spacing_; }
   SourceStatistics statistics() const override;
   void save(StateWriter& writer) const override { const_cast<PrescribedSource*>(this)->visit(writer); }
-  void restore(StateReader& reader) override { visit(reader); }
+  void restore(StateReader& reader) override;
 
  private:
   template <class Archive>

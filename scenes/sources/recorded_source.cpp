@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "common/errors.h"
@@ -23,6 +24,8 @@ using tracking::match_ids;
 
 /// A time this near to a file's (in frame intervals) is the file's: rounding of frame times must not interpolate.
 constexpr double same_time = 1e-9;
+/// Files at hand.
+constexpr std::size_t most_cached = 5;
 
 void append(ParticleState& state, const ParticleState& from, std::size_t i, const Vec3& position, const Vec3& velocity,
             double density) {
@@ -201,7 +204,7 @@ const ParticleState& RecordedSource::file_state(std::size_t k) {
   const bool may_skip = sequence_.first.has_rest_positions || !has_lasting_ids();
   for (std::size_t i = may_skip ? std::max(next, k) : next; i <= k; ++i) {
     read_into_cache(i);
-    while (cache_.size() > 5) cache_.erase(cache_.begin());
+    while (cache_.size() > most_cached) cache_.erase(cache_.begin());
     std::erase_if(renewals_, [&](const Renewal& renewal) { return renewal.file < cache_.begin()->first; });
   }
   return cache_.at(k);
@@ -245,6 +248,8 @@ struct SequenceMark {
 
 /// @throws InputError where the files are no longer those of the mark.
 void check_same_files(const SequenceMark& then, const SequenceMark& now) {
+  if (then.sizes.size() != then.names.size() || then.times.size() != then.names.size())
+    throw StateError("the saved list of files contradicts itself");
   for (std::size_t k = 0; k < then.names.size(); ++k) {
     if (k >= now.names.size() || now.names[k] != then.names[k])
       refuse(fmt::format("{} is no longer among the recorded particles", then.names[k]));
@@ -278,10 +283,14 @@ void RecordedSource::restore(StateReader& reader) {
   std::vector<std::uint64_t> cached;
   reader.section("recorded particles");
   reader(mark, state_, rest_positions_, renewals_, cached, checksums_);
+  check_restored(state_);
   check_same_files(mark, SequenceMark(sequence_));
   if (!checksums_.empty() && checksums_.rbegin()->first >= sequence_.files.size())
     throw StateError("the saved state names a file that is not there");
   check_same_content(checksums_, sequence_);
+  if (cached.size() > most_cached ||
+      std::adjacent_find(cached.begin(), cached.end(), std::greater_equal<>()) != cached.end())
+    throw StateError("the saved list of files at hand contradicts itself");
   cache_.clear();
   take_back_renewals(cached);
   for (const std::uint64_t k : cached) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/errors.h"
 #include "scenes/sources/forward_time.h"
 #include "scenes/sources/wall_points.h"
 
@@ -27,6 +28,15 @@ sph::SimulationSetup setup_of(const Scene& scene) {
   return setup;
 }
 
+/// What blows up before its first step is wrong in the scene.
+sph::Solver solver_of(const Scene& scene) {
+  try {
+    return sph::Solver(setup_of(scene));
+  } catch (const sph::BlowUpError& error) {
+    throw InputError(error.what());
+  }
+}
+
 std::string viscosity_solver(const sph::SolverSettings& settings, const sph::SolverStatistics& statistics) {
   if (settings.viscosity_solver != sph::ViscositySolver::implicit) return "explicit";
   const auto steps = static_cast<double>(std::max<std::uint64_t>(1, statistics.steps));
@@ -37,7 +47,7 @@ std::string viscosity_solver(const sph::SolverSettings& settings, const sph::Sol
 
 }  // namespace
 
-SimulationSource::SimulationSource(const Scene& scene) : solver_(setup_of(scene)), walls_(sample_walls(scene)) {
+SimulationSource::SimulationSource(const Scene& scene) : solver_(solver_of(scene)), walls_(sample_walls(scene)) {
   take_state();
 }
 

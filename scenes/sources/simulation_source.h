@@ -9,7 +9,7 @@ namespace flowskin::scenes {
 
 class SimulationSource : public ParticleSource {
  public:
-  /// @throws sph::SettingsError where the simulation cannot be set up.
+  /// @throws sph::SettingsError where the simulation cannot be set up, InputError where it blows up at the start.
   explicit SimulationSource(const Scene& scene);
 
   const ParticleState& state() const override { return state_; }
@@ -18,6 +18,7 @@ class SimulationSource : public ParticleSource {
   bool advance_towards(double time, const std::function<bool()>& stop) override;
   double spacing() const override { return solver_.settings().spacing; }
   SourceStatistics statistics() const override;
+  std::vector<std::string> warnings() const override { return solver_.warnings(); }
   void save(StateWriter& writer) const override { solver_.save(writer); }
   void restore(StateReader& reader) override;
   const sph::Solver& solver() const { return solver_; }

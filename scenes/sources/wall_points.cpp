@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "sph/walls/boundary_sampling.h"
+#include "sph/walls/wall_reach.h"
 #include "tracking/field/metaballs/field_walls.h"
 
 namespace flowskin::scenes {
@@ -20,10 +21,16 @@ tracking::Walls sample_walls(const Scene& scene) {
   if (!scene.tracking.enabled || !(scene.tracking.field.wall_share > 0)) return {};
   const double spacing = scene.particles.spacing;
   tracking::Walls resting, moving;
-  const auto add = [spacing](const sph::TriangleMesh& mesh, const KeyframeMotion& motion, tracking::Walls& walls) {
+  sph::SolverSettings settings = scene.solver;
+  settings.spacing = spacing;
+  const sph::Box reach = sph::wall_reach(settings);
+  sph::WallCount count(spacing, spacing);
+  const auto add = [&](const sph::TriangleMesh& mesh, const KeyframeMotion& motion, tracking::Walls& walls) {
     if (mesh.triangles.empty()) return;
-    walls.push_back(
-        std::make_shared<const tracking::Wall>(sph::sample_surface(mesh, spacing), spacing * spacing, motion));
+    const sph::Box place = motion.moves() ? sph::everywhere() : reach;
+    count.add(mesh, place, "the field's wall");
+    walls.push_back(std::make_shared<const tracking::Wall>(sph::sample_surface(mesh, spacing, {}, place),
+                                                           spacing * spacing, motion));
   };
   // Resting walls together: where two have a face in common it counts once.
   sph::TriangleMesh rest;
