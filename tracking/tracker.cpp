@@ -1,11 +1,13 @@
 #include "tracking/tracker.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "common/number_text.h"
 #include "common/stopwatch.h"
 #include "tracking/advection/particle_motion.h"
 #include "tracking/advection/particle_paths.h"
@@ -33,7 +35,7 @@ constexpr double kFarReach = 2;             // of old material where particles k
 
 void require(bool condition, const std::string& name, double value, const std::string& wanted) {
   if (!condition) {
-    throw std::invalid_argument("tracker settings: " + name + " is " + std::to_string(value) + ", but must be " +
+    throw std::invalid_argument("tracker settings: " + name + " is " + number_text(value, 4) + ", but must be " +
                                 wanted);
   }
 }
@@ -118,8 +120,8 @@ class TrackerImpl {
   void advance(const FieldMotion& motion) {
     if (follows_particles_) throw std::invalid_argument("the tracker follows particles; a field alone has none");
     if (motion.begin_time() != particles_.time) {
-      throw std::invalid_argument("the field's motion begins at " + std::to_string(motion.begin_time()) +
-                                  " s, but the tracked surface is at " + std::to_string(particles_.time) + " s");
+      throw std::invalid_argument("the field's motion begins at " + number_text(motion.begin_time()) +
+                                  " s, but the tracked surface is at " + number_text(particles_.time) + " s");
     }
     report_ = {};
     if (mesh_.positions.empty()) {
@@ -164,6 +166,8 @@ class TrackerImpl {
     topology_ = build_adjacency(static_cast<int>(mesh_.positions.size()), mesh_.triangles);
     if (!mesh_.positions.empty() && rest_lengths_.size() != topology_.edges.size())
       throw std::invalid_argument("the state of the tracker has another number of springs than of edges");
+    if (velocities_known_ && mesh_.velocities.size() != mesh_.positions.size())
+      throw std::invalid_argument("the state of the tracker has other velocities than it says");
   }
 
   void begin_layer() { mesh_.layers.push_back(mesh_.positions); }
@@ -193,6 +197,22 @@ class TrackerImpl {
     }
   }
 
+  // Whether each edge has one triangle on each side, which passes it the other way.
+  static bool is_closed(const std::vector<Triangle>& triangles) {
+    std::vector<std::array<int, 2>> edges, opposite;
+    for (const Triangle& t : triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int a = t[k], b = t[(k + 1) % 3];
+        if (a == b) return false;
+        edges.push_back({a, b});
+        opposite.push_back({b, a});
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    std::sort(opposite.begin(), opposite.end());
+    return edges == opposite && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+  }
+
   static void check_mesh(const SurfaceMesh& mesh) {
     const std::size_t count = mesh.positions.size();
     bool sound = mesh.rest_positions.size() == count && mesh.ids.size() == count &&
@@ -200,6 +220,11 @@ class TrackerImpl {
     for (const auto& layer : mesh.layers) sound = sound && layer.size() == count;
     for (const Triangle& triangle : mesh.triangles)
       for (const int vertex : triangle) sound = sound && vertex >= 0 && static_cast<std::size_t>(vertex) < count;
+    const auto finite = [](const std::vector<Vec3>& vectors) {
+      return std::all_of(vectors.begin(), vectors.end(), [](const Vec3& v) { return v.allFinite(); });
+    };
+    sound = sound && finite(mesh.positions) && finite(mesh.rest_positions) && finite(mesh.velocities) &&
+            std::all_of(mesh.layers.begin(), mesh.layers.end(), finite) && is_closed(mesh.triangles);
     if (!sound) throw std::invalid_argument("the state of the tracker has a mesh that contradicts itself");
   }
 

@@ -9,6 +9,7 @@
 #include <new>
 
 #include "common/errors.h"
+#include "common/thread_count.h"
 #include "sph/solver.h"
 #include "tools/commands/command.h"
 #include "tools/pipeline/interruption.h"
@@ -125,6 +126,7 @@ int complain(const char* message, int status) {
 }  // namespace
 
 int run_program(int argc, const char* const* argv) {
+  use_threads(0);
   try {
     return run_chosen(argc, argv);
   } catch (const InterruptedError& error) {
@@ -136,7 +138,7 @@ int run_program(int argc, const char* const* argv) {
   } catch (const std::bad_alloc&) {
     return complain("out of memory: use fewer particles (a larger spacing) or a larger edge_length", kRunFailed);
   } catch (const std::exception& error) {
-    return complain(error.what(), kRunFailed);
+    return complain(plain_message(error).c_str(), kRunFailed);
   }
 }
 

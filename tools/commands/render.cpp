@@ -1,11 +1,11 @@
 // flowskin render DIR: pictures and videos of a finished run, again.
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <memory>
 
 #include "common/errors.h"
+#include "common/thread_count.h"
 #include "scenes/io/frame_files.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/scene_file.h"
@@ -106,7 +106,7 @@ class Redraw {
 };
 
 int render(const RenderOptions& options) {
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  use_threads(options.threads);
   const RunDirectory directory(options.directory);
   directory.check_is_run();
   scenes::Scene scene = scenes::read_scene(directory.scene());

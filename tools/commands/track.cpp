@@ -77,7 +77,8 @@ std::string default_name(const fs::path& first) {
     return end == std::string::npos ? std::string() : name.substr(0, end + 1);
   };
   std::string name = without_number(first.stem().string());
-  fs::path folder = fs::absolute(first).parent_path();
+  std::error_code no_current_folder;
+  fs::path folder = fs::absolute(first, no_current_folder).parent_path();
   for (; (name.empty() || name == "frame" || name == "particles") && folder.has_relative_path();
        folder = folder.parent_path())
     name = folder.filename().string();
@@ -134,9 +135,32 @@ scenes::RecordedSpec recorded_spec(const TrackOptions& options) {
   return spec;
 }
 
+std::string current_folder() {
+  std::error_code error;
+  const fs::path folder = fs::current_path(error);
+  if (error) throw InputError("the current folder cannot be found (was it removed?): " + error.message());
+  return folder.string();
+}
+
+/// What follows from the files or from options, but stands in the scene as something else, which the user never set.
+void require_range(double value, double least, double most, const std::string& what, const char* remedy) {
+  if (value >= least && value <= most) return;
+  throw InputError(fmt::format("{} would be {:.4g}; expected {:g} to {:g}: {}", what, value, least, most, remedy));
+}
+
+void check_ranges(const scenes::Scene& scene) {
+  require_range(scene.particles.spacing, 1e-9, 1000, "the spacing of the particles (m)",
+                "--spacing sets it; larger scenes need a larger unit of length than the metre");
+  require_range(scene.frame_rate, 1e-9, 1e5, "the number of files per second", "--frame-rate or --time-step sets it");
+  require_range(scene.tracking.field.radius, 0.5, 10, "the effective radius, in spacings,",
+                "--radius and --spacing set it");
+  require_range(scene.tracking.edge_length, 0.05, 20, "the edge length, in spacings,",
+                "--edge-length and --spacing set it");
+}
+
 scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) {
   scenes::Scene scene;
-  scene.directory = fs::current_path().string();
+  scene.directory = current_folder();
   scene.name = default_name(sequence.files.front());
   scene.description = "A surface tracked on recorded particles by `flowskin track`.";
   scene.particles.source = scenes::ParticlesSpec::Source::recorded;
@@ -149,6 +173,7 @@ scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) 
   scene.tracking.steps_per_frame = 1;
   if (options.radius) scene.tracking.field.radius = *options.radius / scene.particles.spacing;
   if (options.edge_length) scene.tracking.edge_length = *options.edge_length / scene.particles.spacing;
+  check_ranges(scene);
   if (!options.texture.empty()) scene.texture.image = options.texture;
   if (!options.mapping.empty()) scene.texture.mapping = options.mapping;
   if (options.tile_size) scene.texture.tile_size = *options.tile_size;
@@ -158,7 +183,7 @@ scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) 
 }
 
 int track(const TrackOptions& options) {
-  ParticleSequence sequence = scenes::open_sequence(recorded_spec(options), fs::current_path().string());
+  ParticleSequence sequence = scenes::open_sequence(recorded_spec(options), current_folder());
   for (const std::string& warning : sequence.warnings) warn(warning);
   say(options, fmt::format("{} files from {}, one every {:.6g} s", sequence.files.size(),
                            sequence.files.front().string(), sequence.interval));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/errors.h"
+#include "common/thread_count.h"
 #include "scenes/io/atomic_file.h"
 #include "tools/experiments/experiment.h"
 #include "tools/experiments/summary.h"
@@ -85,7 +86,7 @@ void prepare(const fs::path& out) {
 
 void run_paper(const PaperOptions& options) {
   const double started = wall_seconds();
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  use_threads(options.threads);
   PaperRun run;
   run.scenes = find_scenes(options.scenes);
   run.out = options.out;

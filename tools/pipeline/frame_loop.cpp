@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "common/errors.h"
@@ -28,7 +30,7 @@ FrameLoop::FrameLoop(const RunOptions& options, RunStart start, const RunDirecto
   log_.detail(version_text());
   log_.detail("command: " + options_.command_line);
   log_.detail("machine: " + machine_text());
-  if (scene_.tracking.enabled) clock_.stages.time("tracking", [&] { surface_.emplace(scene_, source_->state()); });
+  if (scene_.tracking.enabled) clock_.stages.time("tracking", [&] { track_first_state(); });
   if (!options_.compare.empty()) {
     comparison_ = std::make_unique<Comparison>(scene_, directory_, methods_to_compare(options_.compare),
                                                surface_->tracker(), to_particles(source_->state()), clock_.stages);
@@ -38,12 +40,33 @@ FrameLoop::FrameLoop(const RunOptions& options, RunStart start, const RunDirecto
     checkpoints_.resume(*resumed, [&](StateReader& reader) {
       source_->restore(reader);
       visit(reader);
+      check_restored(resumed->header().frame);
     });
   scenes::write_file(directory_.scene(), scenes::write_scene(scene_));
 }
 
+/// @throws StateError where the place in the run that was restored is none.
+void FrameLoop::check_restored(int last_frame) const {
+  const int steps = surface_ ? scene_.tracking.steps_per_frame : 1;
+  const double time = source_->state().time, hair = 1e-6 / scene_.frame_rate;
+  const double before = std::max(0, frame_ - 1) / scene_.frame_rate, after = frame_ / scene_.frame_rate;
+  if (frame_ != last_frame + 1 || frame_ < 0 || table_.rows().size() != static_cast<std::size_t>(frame_) ||
+      steps_done_ < 0 || steps_done_ > steps || !(time >= before - hair && time <= after + hair))
+    throw StateError("the saved place in the run contradicts itself");
+}
+
+/// A field that cannot be surfaced at the start is the input's.
+void FrameLoop::track_first_state() {
+  try {
+    surface_.emplace(scene_, source_->state());
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("the particles at the start have no surface that can be tracked: {}", error.what()));
+  }
+}
+
 void FrameLoop::run() {
   for (const std::string& line : lines_at_start(scene_, *source_, surface())) log_.info(line);
+  for (const std::string& warning : source_->warnings()) log_.warning("warning: " + warning);
   if (comparison_) log_.info(comparison_->description());
   if (checkpoints_.saved() >= 0) log_.info(fmt::format("resumed after frame {}", checkpoints_.saved()));
   Progress progress("frame", scene_.frames, options_.quiet ? Progress::Mode::quiet : Progress::Mode::automatic, frame_);
@@ -144,7 +167,7 @@ void FrameLoop::stop() {
 /// Says what happened, what is kept and how to go on.
 void FrameLoop::fail(const std::exception& error) {
   const bool stopped = dynamic_cast<const InterruptedError*>(&error) != nullptr;
-  std::string message = error.what();
+  std::string message = plain_message(error);
   if (!stopped && frame_ <= scene_.frames) message = fmt::format("in frame {}: {}", frame_, message);
   if (dynamic_cast<const sph::BlowUpError*>(&error) != nullptr && checkpoints_.saved() >= 0)
     message +=
@@ -153,6 +176,7 @@ void FrameLoop::fail(const std::exception& error) {
   message += "\n" + what_is_kept();
   log_.detail(message);
   if (stopped || interrupted()) throw InterruptedError(message);
+  if (table_.rows().empty() && dynamic_cast<const InputError*>(&error) != nullptr) throw InputError(message);
   throw RunError(message);
 }
 

@@ -47,6 +47,8 @@ class FrameLoop {
     if (comparison_) archive(*comparison_);
   }
 
+  void track_first_state();
+  void check_restored(int last_frame) const;
   void go_through_frames(Progress& progress);
   void advance();
   void step_to(double time);

@@ -31,7 +31,9 @@ class FrameStatistics {
   void visit(Archive& archive) {
     archive.section("statistics");
     archive(substeps_, reextractions_, frames_reextracted_, splits_, collapses_, flips_, regions_, seconds_topology_);
+    const std::size_t stages = tracking_seconds_.size();
     archive(last_reason_, previous_ids_, first_ids_, tracking_seconds_);
+    if (tracking_seconds_.size() != stages) throw StateError("the saved statistics have other stages");
   }
 
  private:

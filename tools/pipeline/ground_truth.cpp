@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "tracking/advection/particle_paths.h"
+
 namespace flowskin::tools {
 
 GroundTruth::GroundTruth(const scenes::Scene& scene, tracking::TrackerSettings settings, tracking::Particles start,
@@ -19,6 +21,16 @@ void GroundTruth::start_markers(const tracking::SurfaceMesh& mesh) {
   if (!markers_.ids.empty() || mesh.positions.empty()) return;
   markers_ = tracking::start_markers(mesh, particles_.time, marker_settings_.most);
   tracking::settle_markers(field(), most_depth_, markers_);
+}
+
+void GroundTruth::check_restored() const {
+  tracking::check_particles(particles_);
+  const std::size_t count = markers_.ids.size();
+  const auto is_finite = [](const tracking::Vec3& v) { return v.allFinite(); };
+  if (markers_.rest_positions.size() != count || markers_.positions.size() != count ||
+      markers_.normals.size() != count || markers_.depths.size() != count || markers_.left.size() != count ||
+      !std::all_of(markers_.positions.begin(), markers_.positions.end(), is_finite) || !std::isfinite(markers_.time))
+    throw StateError("the saved markers contradict themselves");
 }
 
 tracking::MetaballField GroundTruth::field() const { return tracking::field_of(particles_, settings_.field); }

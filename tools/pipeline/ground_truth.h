@@ -3,7 +3,9 @@
 
 #include <optional>
 #include <string>
+#include <type_traits>
 
+#include "common/state_archive.h"
 #include "scenes/scene.h"
 #include "scenes/sources/motion.h"
 #include "tracking/ground_truth/markers.h"
@@ -47,9 +49,12 @@ class GroundTruth {
     archive.section("markers");
     tracking::visit_state(archive, particles_);
     archive(markers_);
+    if constexpr (std::is_same_v<Archive, StateReader>) check_restored();
   }
 
  private:
+  /// @throws StateError, std::invalid_argument
+  void check_restored() const;
   tracking::FlowAt exact_flow() const;
   int exact_steps(double duration) const;
   int steps_for(double ratio) const;

@@ -81,7 +81,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::unique_ptr<Checkpoint> open_checkpoint(const RunDirectory& directory) {
   const std::string root = directory.root().string();
-  if (!fs::exists(directory.root()))
+  std::error_code error;
+  if (!fs::exists(directory.root(), error))
     throw InputError(fmt::format("there is nothing to resume: {} does not exist; leave out --resume to start", root));
   const auto newest = CheckpointFolder(directory.checkpoint_folder()).newest();
   if (!newest)

@@ -1,13 +1,13 @@
 #include "tools/pipeline/run_scene.h"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "common/errors.h"
+#include "common/thread_count.h"
 #include "scenes/scene_file.h"
 #include "tools/pipeline/frame_loop.h"
 #include "tools/pipeline/interruption.h"
@@ -51,7 +51,7 @@ void run_scene(const RunOptions& options) {
 
 void run_scene(scenes::Scene scene, const RunOptions& given) {
   RunOptions options = given;
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  use_threads(options.threads);
   if (!methods_to_compare(options.compare).empty() && !scene.tracking.enabled)
     throw InputError(fmt::format("--compare needs a tracked surface, but {} has tracking.enabled false",
                                  options.scene_file.string()));

@@ -33,6 +33,7 @@ class TrackedSurface {
   void visit(Archive& archive) {
     archive(textures_, warned_of_ghosts_);
     visit_tracker(archive, tracker_);
+    if (!textures_.fit(tracker_.mesh())) throw StateError("the saved textures do not fit the surface");
   }
 
  private:

@@ -42,6 +42,10 @@ class TextureGenerations {
   /// Share of the surface's area where the texture is stretched past the limit, each generation counted by its weight;
   /// the solid texture counts as not stretched.
   double overstretched() const { return overstretched_; }
+  /// Whether the mesh has the layers of these generations.
+  bool fit(const tracking::SurfaceMesh& mesh) const {
+    return layers_.size() == mesh.layers.size() && (older_is_rest_ || !layers_.empty());
+  }
   /// How many generations there have been.
   int generations() const { return generations_; }
 

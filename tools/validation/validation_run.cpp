@@ -1,12 +1,12 @@
 #include "tools/validation/validation_run.h"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cstdio>
 
 #include "common/errors.h"
+#include "common/thread_count.h"
 #include "scenes/io/atomic_file.h"
 #include "sph/solver.h"
 #include "tools/report/run_log.h"
@@ -134,7 +134,7 @@ bool run_validation(const ValidateOptions& options) {
       fmt::print("{:<20} {:<6} {}\n", one.name, one.quick ? "quick" : "long", one.title);
     return true;
   }
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  use_threads(options.threads);
   prepare_folder(options.out);
   std::vector<ValidationOutcome> outcomes;
   bool all_hold = true;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "common/number_text.h"
 #include "common/quantile.h"
 #include "tracking/advection/jumps.h"
 #include "tracking/advection/match_ids.h"
@@ -56,7 +57,7 @@ double distance_of_most(const std::vector<Vec3>& points, const std::vector<Vec3>
 void check_particles(const Particles& particles) {
   const std::size_t count = particles.ids.size();
   const auto fail = [&](const std::string& what) {
-    throw std::invalid_argument("particles at time " + std::to_string(particles.time) + " s: " + what);
+    throw std::invalid_argument("particles at time " + number_text(particles.time, 4) + " s: " + what);
   };
   if (!std::isfinite(particles.time)) fail("the time must be finite");
   const auto fits = [count](std::size_t size) { return size == count || size == 0; };

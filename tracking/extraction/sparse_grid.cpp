@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/number_text.h"
+
 namespace flowskin::tracking {
 namespace {
 
@@ -38,9 +40,9 @@ SparseGrid::NodeBox SparseGrid::nodes_within(const Vec3& low, const Vec3& high, 
     const double first = low[axis] / spacing - kShift, last = high[axis] / spacing - kShift;
     constexpr double limit = static_cast<double>(kKeyOffset - 2) * kSide;
     if (!(first > -limit && last < limit)) {
-      throw std::invalid_argument("surface extraction: the range from " + std::to_string(low[axis]) + " m to " +
-                                  std::to_string(high[axis]) +
-                                  " m is not finite or too far away for a grid of spacing " + std::to_string(spacing) +
+      throw std::invalid_argument("surface extraction: the range from " + number_text(low[axis], 4) + " m to " +
+                                  number_text(high[axis], 4) +
+                                  " m is not finite or too far away for a grid of spacing " + number_text(spacing, 4) +
                                   " m; remove particles that left the scene");
     }
     box.low[axis] = static_cast<int>(std::ceil(first));
@@ -108,7 +110,7 @@ SparseGrid SparseGrid::of_values(const Index& size, const std::vector<double>& v
   if (values.size() != static_cast<std::size_t>(size[0]) * size[1] * size[2] || !(spacing > 0)) {
     throw std::invalid_argument("sparse grid: " + std::to_string(values.size()) + " values for " +
                                 std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
-                                std::to_string(size[2]) + " nodes of spacing " + std::to_string(spacing));
+                                std::to_string(size[2]) + " nodes of spacing " + number_text(spacing, 4));
   }
   std::vector<std::uint64_t> keys;
   const NodeBox box{{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}};
@@ -129,7 +131,7 @@ SparseGrid SparseGrid::of_values(const Index& size, const std::vector<double>& v
 SparseGrid SparseGrid::of_function(const std::function<double(const Vec3&)>& value, const Box& box, double outside,
                                    double spacing) {
   if (!(spacing > 0)) {
-    throw std::invalid_argument("surface extraction: the grid's spacing is " + std::to_string(spacing) +
+    throw std::invalid_argument("surface extraction: the grid's spacing is " + number_text(spacing, 4) +
                                 ", but must be positive (m)");
   }
   std::vector<std::uint64_t> keys;

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "common/number_text.h"
 #include "tracking/field/metaballs/metaball_field.h"
 #include "tracking/field/metaballs/particle_blocks.h"
 
@@ -17,7 +18,7 @@ void check(const std::vector<Vec3>& positions, double share, double radius) {
   if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& x) { return x.allFinite(); }))
     throw std::invalid_argument("FieldWall: a position is not finite; check the wall's mesh and motion");
   if (!(std::isfinite(share) && share >= 0 && std::isfinite(radius) && radius > 0))
-    throw std::invalid_argument("FieldWall: share is " + std::to_string(share) + ", radius " + std::to_string(radius) +
+    throw std::invalid_argument("FieldWall: share is " + number_text(share, 4) + ", radius " + number_text(radius, 4) +
                                 "; expected a number that is not negative and a positive length (m)");
 }
 
@@ -55,7 +56,7 @@ Wall::Wall(std::vector<Vec3> points, double area, KeyframeMotion motion)
     : points_(std::move(points)), area_(area), motion_(std::move(motion)) {
   check(points_, 0, 1);
   if (!(std::isfinite(area_) && area_ > 0))
-    throw std::invalid_argument("Wall: the area that a point stands for is " + std::to_string(area_) +
+    throw std::invalid_argument("Wall: the area that a point stands for is " + number_text(area_, 4) +
                                 "; expected a positive number (m^2)");
 }
 Wall::~Wall() = default;

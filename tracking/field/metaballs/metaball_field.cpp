@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "common/number_text.h"
 #include "tracking/field/metaballs/field_parts.h"
 
 namespace flowskin::tracking {
@@ -24,12 +25,12 @@ void check_finite(const std::vector<Vec3>& vectors, const char* what) {
 
 void check(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities, const FieldSettings& settings) {
   if (!positive(settings.radius)) {
-    throw std::invalid_argument("MetaballField: radius is " + std::to_string(settings.radius) +
+    throw std::invalid_argument("MetaballField: radius is " + number_text(settings.radius, 4) +
                                 "; expected a positive length (m), see default_field_settings");
   }
   if (!positive(settings.weight) || !std::isfinite(settings.threshold)) {
-    throw std::invalid_argument("MetaballField: weight is " + std::to_string(settings.weight) + ", threshold is " +
-                                std::to_string(settings.threshold) + "; expected a positive and a finite number");
+    throw std::invalid_argument("MetaballField: weight is " + number_text(settings.weight, 4) + ", threshold is " +
+                                number_text(settings.threshold, 4) + "; expected a positive and a finite number");
   }
   if (!velocities.empty() && velocities.size() != positions.size()) {
     throw std::invalid_argument("MetaballField: " + std::to_string(velocities.size()) + " velocities for " +
@@ -58,8 +59,8 @@ void append(std::vector<Vec3>&& from, std::vector<Vec3>& to) {
 
 FieldSettings default_field_settings(double spacing, double radius_in_spacings) {
   if (!positive(spacing) || !positive(radius_in_spacings)) {
-    throw std::invalid_argument("default_field_settings: spacing is " + std::to_string(spacing) + ", radius is " +
-                                std::to_string(radius_in_spacings) + " spacings; expected positive numbers");
+    throw std::invalid_argument("default_field_settings: spacing is " + number_text(spacing, 4) + ", radius is " +
+                                number_text(radius_in_spacings, 4) + " spacings; expected positive numbers");
   }
   FieldSettings settings;
   settings.radius = radius_in_spacings * spacing;
@@ -76,8 +77,8 @@ MetaballField::Impl::Impl(std::vector<FieldPart> given, const FieldSettings& fie
   for (FieldPart& part : given) {
     check(part.positions, part.velocities, settings);
     if (!(std::isfinite(part.share) && part.share >= 0 && std::isfinite(part.share_rate)))
-      throw std::invalid_argument("MetaballField: the share of a part is " + std::to_string(part.share) +
-                                  ", its rate " + std::to_string(part.share_rate) +
+      throw std::invalid_argument("MetaballField: the share of a part is " + number_text(part.share, 4) +
+                                  ", its rate " + number_text(part.share_rate, 4) +
                                   "; expected a number that is not negative and a finite one");
     const std::size_t count = part.positions.size();
     parts.push_back({std::make_shared<const ParticleBlocks>(part.positions, part.velocities, settings.radius),

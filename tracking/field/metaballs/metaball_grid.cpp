@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/number_text.h"
+
 namespace flowskin::tracking {
 namespace {
 
@@ -57,9 +59,9 @@ SparseGrid grid_of_particles(const std::vector<Vec3>& positions, const FieldSett
                              const std::vector<double>& shares) {
   const auto share = [&shares](std::size_t p) { return shares.empty() ? 1.0 : shares[p]; };
   if (!(spacing > 0 && settings.radius > 0 && settings.threshold > 0)) {
-    throw std::invalid_argument("surface extraction: grid spacing (" + std::to_string(spacing) + " m), field radius (" +
-                                std::to_string(settings.radius) + " m) and threshold (" +
-                                std::to_string(settings.threshold) + ") must be positive");
+    throw std::invalid_argument("surface extraction: grid spacing (" + number_text(spacing, 4) + " m), field radius (" +
+                                number_text(settings.radius, 4) + " m) and threshold (" +
+                                number_text(settings.threshold, 4) + ") must be positive");
   }
   std::vector<SparseGrid::NodeBox> boxes(positions.size());
   const Vec3 reach = Vec3::Constant(settings.radius);
