@@ -12,6 +12,8 @@ namespace flowskin::scenes {
 namespace {
 
 constexpr std::size_t max_depth = 64;
+/// Each takes some 150 bytes of memory; five million explicit particles are within it.
+constexpr std::size_t most_nodes = 20000000;
 
 bool is_number_character(char c) {
   return (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.' || c == 'e' || c == 'E';
@@ -137,6 +139,8 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
 
   JsonNode* add(JsonNode::Type type, std::size_t offset) {
+    if (++nodes_ > most_nodes)
+      throw InputError(fmt::format("{}: there are more than {} values; this is no scene", name_, most_nodes));
     JsonNode* node = &root;
     if (!open_.empty()) node = &open_.back()->children.emplace_back();
     node->type = type;
@@ -167,7 +171,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   std::istringstream& stream_;
   std::vector<JsonNode*> open_;
   std::string key_;
-  std::size_t key_offset_ = 0;
+  std::size_t key_offset_ = 0, nodes_ = 0;
 };
 
 }  // namespace

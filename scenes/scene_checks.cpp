@@ -213,6 +213,15 @@ void load_mesh(const Scene& scene, const MeshPlacement& placement, const std::st
     mesh = place(read_obj(file), placement);
   } catch (const InputError& problem) {
     checker.require(false, list, i, "file", std::string("cannot be read: ") + problem.what());
+    return;
+  }
+  for (const Vec3& p : mesh.positions) {
+    if (p.cwiseAbs().maxCoeff() <= max_recorded_coordinate) continue;
+    checker.require(false, list, i, "file",
+                    fmt::format("places a vertex of {} at ({:.4g}, {:.4g}, {:.4g}) m, farther out than {:g} m; does it "
+                                "stray?",
+                                file.string(), p.x(), p.y(), p.z(), max_recorded_coordinate));
+    return;
   }
 }
 

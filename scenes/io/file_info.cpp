@@ -13,6 +13,7 @@
 #include "scenes/io/obj_reader.h"
 #include "scenes/io/particle_file.h"
 #include "scenes/io/ply_reader.h"
+#include "scenes/io/read_bytes.h"
 #include "scenes/sources/particle_spacing.h"
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
@@ -122,6 +123,7 @@ void describe_particles(FileInfo& info, const std::string& name, const ParticleT
 }  // namespace
 
 FileInfo describe_file(const std::filesystem::path& file) {
+  require_regular_file(file);
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

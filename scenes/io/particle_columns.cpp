@@ -200,10 +200,13 @@ ParticleFile particles_from_table(const ParticleTable& table, const std::string&
   state.velocities = vectors(velocity, std::vector<Vec3>(table.count, Vec3::Zero()), "velocity", "m/s", name);
   state.rest_positions = vectors(rest, state.positions, "rest position", "m", name);
   state.densities = densities != nullptr ? *densities : Column(table.count, 0.0);
-  for (std::size_t i = 0; i < state.densities.size(); ++i)
+  for (std::size_t i = 0; i < state.densities.size(); ++i) {
+    if (!std::isfinite(state.densities[i]))
+      throw InputError(name + ", particle " + std::to_string(i + 1) + ": the density is not finite");
     if (!(std::abs(state.densities[i]) <= largest_density))
       throw InputError(fmt::format("{}, particle {}: the density is {:.4g}; expected a number up to {:g}", name, i + 1,
                                    state.densities[i], largest_density));
+  }
   if (file.has_ids) sort_by_id(state, name);
   return file;
 }

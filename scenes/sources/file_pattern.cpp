@@ -19,6 +19,9 @@ using Paths = std::vector<std::filesystem::path>;
 /// Numbers with more gaps than this are no frame numbers: then files follow each other at once.
 constexpr std::uint64_t most_steps_per_file = 4;
 
+/// Of a file, in bytes.
+constexpr std::size_t longest_name = 255;
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// The pattern as a regular expression.
@@ -135,6 +138,8 @@ Paths matching_files(const std::filesystem::path& pattern) {
   const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
   const auto names = names_in(folder);
   if (!names) throw InputError(fmt::format("{}: cannot look into the folder {}", pattern.string(), folder.string()));
+  if (pattern.filename().string().size() > longest_name)
+    throw InputError(fmt::format("{}...: no file has so long a name", pattern.string().substr(0, longest_name)));
   const std::regex expression = pattern_expression(pattern.filename().string());
   Paths paths;
   for (const std::string& name : *names)

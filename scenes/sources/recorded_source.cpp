@@ -84,6 +84,20 @@ ParticleState between(const ParticleState& a, const ParticleState& b, double s, 
   return state;
 }
 
+/// @throws InputError where the velocities carry particles absurdly far until the next file: the interpolated ones
+/// would be anywhere.
+void check_speeds(const ParticleSequence& sequence, double spacing) {
+  constexpr double farthest = 1e5;  // spacings
+  if (!sequence.first.has_velocities || sequence.files.size() < 2) return;
+  double fastest = 0;
+  for (const Vec3& v : sequence.first.state.velocities) fastest = std::max(fastest, v.norm());
+  if (fastest * sequence.interval <= farthest * spacing) return;
+  throw InputError(fmt::format(
+      "{}: at {:.4g} m/s a particle goes {:.4g} m until the next file, {:.4g} s later, which is more than "
+      "{:g} spacings of {:.4g} m; are velocities, times (--time-step) and spacing right?",
+      sequence.files.front().string(), fastest, fastest * sequence.interval, sequence.interval, farthest, spacing));
+}
+
 /// The particles of both states, each moved by its velocity, weighted by how near the states are.
 ParticleState blended(const ParticleState& a, const ParticleState& b, double s, double interval) {
   ParticleState state;
@@ -161,6 +175,7 @@ RecordedSource::RecordedSource(const Scene& scene)
     : sequence_(open_sequence(scene.particles.recorded, scene.directory)),
       spacing_(scene.particles.spacing),
       walls_(sample_walls(scene)) {
+  check_speeds(sequence_, spacing_);
   advance_to(0);
 }
 

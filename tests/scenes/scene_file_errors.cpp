@@ -88,8 +88,8 @@ TEST(SceneFileErrors, NumbersOutOfRange) {
   EXPECT_THAT(error_of(small_scene(R"("fluid": {"viscosity": -1})")),
               AllOf(HasSubstr("the number -1"), HasSubstr("number >= 0 (m^2/s)")));
   EXPECT_THAT(error_of(small_scene(R"("fluid": {"density": 1e300})")), HasSubstr("the largest allowed"));
-  EXPECT_THAT(error_of(small_scene(R"("frames": 0)")),
-              AllOf(HasSubstr("frames is the number 0"), HasSubstr("from 1 to")));
+  EXPECT_THAT(error_of(small_scene(R"("frames": -1)")),
+              AllOf(HasSubstr("frames is the number -1"), HasSubstr("from 0 to")));
   EXPECT_THAT(error_of(small_scene(R"("frames": 1e99)")), HasSubstr("frames"));
   EXPECT_THAT(error_of(small_scene(R"("render": {"ground_color": [0, 0, 2]})")), HasSubstr("from 0 to 1"));
   EXPECT_THAT(error_of(small_scene(R"("simulation": {"support_radius": 0.5})")), HasSubstr("from 1.5 to 4 (spacings)"));
@@ -230,7 +230,7 @@ TEST(SceneFileErrors, MissingFiles) {
 
 TEST(SceneFileErrors, AllProblemsAreListedInOrder) {
   const std::string message =
-      error_of("{\n\"frames\": 0,\n\"particles\": {\"spacing\": 0},\n\"seed\": \"x\",\n\"nam\": 1}");
+      error_of("{\n\"frames\": -1,\n\"particles\": {\"spacing\": 0},\n\"seed\": \"x\",\n\"nam\": 1}");
   EXPECT_THAT(message, testing::ContainsRegex("test.json:2:1.*\ntest.json:3:15.*\ntest.json:4:1.*\ntest.json:5:1"));
 }
 

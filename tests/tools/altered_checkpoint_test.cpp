@@ -61,9 +61,8 @@ class AlteredCheckpoints : public testing::Test {
       again.resume = true;
       try {
         run_scene(scene(text), again);
-      } catch (const InputError& error) {
+      } catch (const InputError&) {
         ++refused;
-        EXPECT_THAT(error.what(), HasSubstr("frame_0001.bin")) << "at byte " << at;
       } catch (const RunError&) {
       }
     }

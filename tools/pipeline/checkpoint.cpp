@@ -56,7 +56,11 @@ Checkpoint::Checkpoint(fs::path file) : file_(std::move(file)), bytes_(scenes::r
   if (number_at<std::uint32_t>(bytes, size + sizeof(std::uint64_t)) != checksum(0, bytes.substr(0, size)))
     refuse("is damaged: its checksum is wrong" + remedy);
   reader_.emplace(bytes.substr(kHeadSize, size - kHeadSize));
-  (*reader_)(header_);
+  try {
+    (*reader_)(header_);
+  } catch (const StateError& error) {
+    refuse(std::string("contradicts itself: ") + error.what() + remedy);
+  }
   if (header_.program != version_text())
     refuse(
         fmt::format("was written by {}, but this is {}, whose results may differ: resume with that version, or run "
@@ -111,7 +115,8 @@ void CheckpointFolder::mark_complete(int frames) const {
 
 int CheckpointFolder::complete_frames() const {
   int frames = -1;
-  std::ifstream(mark()) >> frames;
+  std::error_code error;
+  if (fs::is_regular_file(mark(), error)) std::ifstream(mark()) >> frames;
   return frames;
 }
 

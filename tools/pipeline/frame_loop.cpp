@@ -31,9 +31,10 @@ FrameLoop::FrameLoop(const RunOptions& options, RunStart start, const RunDirecto
   log_.detail("command: " + options_.command_line);
   log_.detail("machine: " + machine_text());
   if (scene_.tracking.enabled) clock_.stages.time("tracking", [&] { track_first_state(); });
-  if (!options_.compare.empty()) {
-    comparison_ = std::make_unique<Comparison>(scene_, directory_, methods_to_compare(options_.compare),
-                                               surface_->tracker(), to_particles(source_->state()), clock_.stages);
+  if (const auto methods = methods_to_compare(options_.compare); !methods.empty()) {
+    if (!surface_) throw InputError("--compare needs a tracked surface, but tracking.enabled is false");
+    comparison_ = std::make_unique<Comparison>(scene_, directory_, methods, surface_->tracker(),
+                                               to_particles(source_->state()), clock_.stages);
     if (scene_.render.enabled) comparison_->make_pictures(start.texture, bounds(source_->state().positions));
   }
   if (resumed)

@@ -115,7 +115,12 @@ SceneChanges scene_changes(const std::string& then, const std::string& now) {
 
 std::vector<std::string> check_resumable(const Checkpoint& checkpoint, const CheckpointHeader& now, int frames) {
   const CheckpointHeader& then = checkpoint.header();
-  SceneChanges changes = scene_changes(then.scene, now.scene);
+  SceneChanges changes;
+  try {
+    changes = scene_changes(then.scene, now.scene);
+  } catch (const InputError& error) {
+    checkpoint.refuse(std::string("contradicts itself: ") + error.what() + "; run the scene anew");
+  }
   for (const FileContent& content : now.files) {
     const auto same_key = [&](const FileContent& other) { return other.key == content.key; };
     const auto old = std::find_if(then.files.begin(), then.files.end(), same_key);

@@ -43,7 +43,8 @@ SparseGrid::NodeBox SparseGrid::nodes_within(const Vec3& low, const Vec3& high, 
       throw std::invalid_argument("surface extraction: the range from " + number_text(low[axis], 4) + " m to " +
                                   number_text(high[axis], 4) +
                                   " m is not finite or too far away for a grid of spacing " + number_text(spacing, 4) +
-                                  " m; remove particles that left the scene");
+                                  " m; remove particles that left the scene, or "
+                                  "move all nearer to the origin");
     }
     box.low[axis] = static_cast<int>(std::ceil(first));
     box.high[axis] = static_cast<int>(std::floor(last));
