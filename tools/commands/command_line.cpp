@@ -140,7 +140,7 @@ int run_guarded(int argc, const char* const* argv) {
   } catch (const std::bad_alloc&) {
     return complain("out of memory: use fewer particles (a larger spacing) or a larger edge_length", kRunFailed);
   } catch (const std::exception& error) {
-    return complain(error.what(), kRunFailed);
+    return complain(error.what(), interrupted() ? InterruptedError::exit_status() : kRunFailed);
   }
 }
 

@@ -15,11 +15,11 @@ bool stops_on_hangup = false;
 void on_hangup(int) { hangup = 1; }
 
 void on_interruption(int signal) {
+  kill_child();  // it would be waited for
   if (interruption_signal == 0) {
     interruption_signal = signal;
     return;
   }
-  kill_child();
   scenes::remove_drafts();
   std::signal(signal, SIG_DFL);
   std::raise(signal);  // comes when this handler returns

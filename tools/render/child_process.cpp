@@ -31,7 +31,8 @@ std::string read_all(int descriptor) {
   }
 }
 
-/// Starts it with its standard error into this descriptor; signals come once kill_child() knows of it.
+/// Starts it with its standard error into this descriptor; signals come once kill_child() knows of it. It has a process
+/// group of its own: what a terminal sends when it is closed does not reach it.
 /// @return the error number; 0: it runs
 int spawn(std::vector<char*>& argv, int errors) {
   posix_spawn_file_actions_t actions;
@@ -46,7 +47,7 @@ int spawn(std::vector<char*>& argv, int errors) {
   pthread_sigmask(SIG_SETMASK, &all, &before);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
   posix_spawnattr_setsigmask(&attributes, &before);
   posix_spawnattr_setsigdefault(&attributes, &pipe);
   pid_t child = 0;

@@ -15,7 +15,7 @@ struct ChildOutcome {
 /// Runs a program found on the path, without a shell: arguments may contain anything. @throws RunError
 ChildOutcome run_child(const std::vector<std::string>& arguments);
 
-/// Kills the one that is running. Safe in a signal handler, before the process ends.
+/// Kills the one that is running. Safe in a signal handler.
 void kill_child() noexcept;
 
 }  // namespace flowskin::tools
