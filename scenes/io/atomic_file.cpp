@@ -9,6 +9,7 @@
 #include <cstring>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "common/errors.h"
 
@@ -60,6 +61,23 @@ int take_slot(const std::string& name) {
   return -1;
 }
 
+CommitObserver& commit_observer() {
+  static CommitObserver observer;
+  return observer;
+}
+
+/// Whether a file is named as AtomicFile names drafts: .NAME.PROCESS-COUNT.part
+bool is_draft(std::string_view name) {
+  constexpr std::string_view kEnd = ".part", kDigits = "0123456789";
+  if (!name.starts_with('.') || !name.ends_with(kEnd)) return false;
+  name.remove_suffix(kEnd.size());
+  const std::size_t dash = name.find_last_not_of(kDigits);
+  if (dash == std::string_view::npos || name[dash] != '-' || dash + 1 == name.size()) return false;
+  name = name.substr(0, dash);
+  const std::size_t dot = name.find_last_not_of(kDigits);
+  return dot != std::string_view::npos && dot > 0 && name[dot] == '.' && dot + 1 < name.size();
+}
+
 void free_slot(int slot) {
   if (slot < 0) return;
   slots[static_cast<std::size_t>(slot)].ready = false;
@@ -105,6 +123,7 @@ void AtomicFile::commit(bool durable) {
   const int result = ::close(descriptor_);
   descriptor_ = -1;
   if (result != 0 && errno != EINTR) fail(errno);
+  if (commit_observer()) commit_observer()(file_, draft_, durable);
   if (::rename(draft_.c_str(), file_.c_str()) != 0) fail(errno);
   renamed_ = true;
   if (durable) sync_folder();
@@ -117,10 +136,15 @@ void AtomicFile::sync_folder() const {
   ::close(folder);
 }
 
-void AtomicFile::fail(int error) const {
-  throw RunError("cannot write " + file_.string() + ": " + std::generic_category().message(error) + "; " +
-                 advice(error, folder_));
+void AtomicFile::fail(int error) const { fail_to_write(file_, error); }
+
+void fail_to_write(const fs::path& file, int error) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  throw RunError("cannot write " + file.string() + ": " + std::generic_category().message(error) + "; " +
+                 advice(error, folder));
 }
+
+void observe_commits(CommitObserver observer) { commit_observer() = std::move(observer); }
 
 void write_file(const fs::path& file, std::string_view bytes) {
   AtomicFile draft(file);
@@ -136,12 +160,9 @@ void remove_drafts() noexcept {
 void remove_stale_drafts(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    const bool own = name.starts_with(".") && name.ends_with(".part");
-    if (own || name.ends_with(".part.mp4")) {
-      std::error_code ignored;
+    std::error_code ignored;
+    if (is_draft(entry->path().filename().string()) && !entry->is_directory(ignored))
       fs::remove(entry->path(), ignored);
-    }
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string_view>
 
 namespace flowskin::scenes {
@@ -17,6 +18,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view bytes);
+  /// The file in the making, for another program to write.
+  const std::filesystem::path& draft() const { return draft_; }
   /// Gives the file its name. `durable`: the bytes and the name have reached the disk itself, whatever happens then.
   void commit(bool durable = false);
 
@@ -35,10 +38,20 @@ class AtomicFile {
 /// behind.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
+/// Is told of each file that is whole but has not got its name yet: what it says comes before the file, even where the
+/// program is killed. Where it throws, the file does not get its name.
+using CommitObserver =
+    std::function<void(const std::filesystem::path& file, const std::filesystem::path& draft, bool durable)>;
+/// There is one for the whole process, since those who write files know nothing of runs. Empty: none.
+void observe_commits(CommitObserver observer);
+
+/// @throws RunError for an error number of the operating system, saying what helps.
+[[noreturn]] void fail_to_write(const std::filesystem::path& file, int error);
+
 /// Removes the files that this process is just writing aside. Safe in a signal handler, before the process ends.
 void remove_drafts() noexcept;
 
-/// Removes what killed processes left behind in a folder (not below it).
+/// Removes the drafts that killed processes left behind in a folder (not below it).
 void remove_stale_drafts(const std::filesystem::path& folder);
 
 }  // namespace flowskin::scenes

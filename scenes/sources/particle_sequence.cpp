@@ -59,6 +59,13 @@ class SequenceOpener {
     return std::move(sequence_);
   }
 
+  std::vector<std::filesystem::path> files() {
+    const bool by_collection = take_collection();
+    if (!by_collection) take_files();
+    if (by_collection) sequence_.files.emplace_back(absolute_name(directory_, spec_.files.front()));
+    return std::move(sequence_.files);
+  }
+
  private:
   /// A single .pvd names the files and their times.
   bool take_collection() {
@@ -213,6 +220,10 @@ class SequenceOpener {
 
 ParticleSequence open_sequence(const RecordedSpec& spec, const std::string& directory) {
   return SequenceOpener(spec, directory).open();
+}
+
+std::vector<std::filesystem::path> sequence_files(const RecordedSpec& spec, const std::string& directory) {
+  return SequenceOpener(spec, directory).files();
 }
 
 ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k) {

@@ -28,6 +28,10 @@ struct ParticleSequence {
 /// @throws InputError naming the file and what is wrong with it or with the sequence.
 ParticleSequence open_sequence(const RecordedSpec& spec, const std::string& directory);
 
+/// The files that `spec` names, a .pvd included; none is looked into but that.
+/// @throws InputError where there are none.
+std::vector<std::filesystem::path> sequence_files(const RecordedSpec& spec, const std::string& directory);
+
 /// File k. @throws InputError also where it lacks ids or velocities that the first file has.
 ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k);
 

@@ -63,9 +63,12 @@ TEST_F(ProgramErrors, AForeignFolderIsNotTouched) {
   const fs::path foreign = folder_ / "thesis";
   fs::create_directories(foreign);
   std::ofstream(foreign / "chapter1.txt") << "years of work";
+  std::ofstream(foreign / "log.txt") << "the years";
   expect(run_flowskin({"run", end_to_end::scene("stairs_preview.json"), "--out", foreign.string()}), 2,
          {"thesis", "not empty"});
   EXPECT_EQ(end_to_end::bytes(foreign / "chapter1.txt"), "years of work");
+  EXPECT_EQ(end_to_end::bytes(foreign / "log.txt"), "the years");
+  EXPECT_EQ(end_to_end::files_below(foreign).size(), 2U);
 }
 
 TEST_F(ProgramErrors, OutIsAFile) {

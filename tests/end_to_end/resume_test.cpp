@@ -71,7 +71,7 @@ TEST_F(Resume, AfterCtrlCAtRandomMoments) {
   int stops = 0;
   for (int attempt = 0; attempt < 8; ++attempt) {
     std::vector<std::string> more{"--threads", attempt % 2 ? "2" : "1"};
-    if (newest_checkpoint(out) >= 0) more.emplace_back("--resume");
+    more.emplace_back(newest_checkpoint(out) >= 0 ? "--resume" : "--overwrite");
     const double due = now() + share(random) * duration_;
     const Result result = run_flowskin_until(
         arguments(out, more), [&] { return now() > due; }, attempt % 3 == 2 ? SIGTERM : SIGINT);
@@ -94,7 +94,7 @@ TEST_F(Resume, AfterKillAtRandomMoments) {
   for (int attempt = 0; attempt < 6; ++attempt) {
     const int saved = newest_checkpoint(out);
     std::vector<std::string> more{"--threads", attempt % 2 ? "1" : "2"};
-    if (saved >= 0) more.emplace_back("--resume");
+    more.emplace_back(saved >= 0 ? "--resume" : "--overwrite");
     resumed += saved >= 0;
     const double due = now() + share(random) * duration_;
     const Result result = run_flowskin_until(
@@ -109,7 +109,7 @@ TEST_F(Resume, AfterKillAtRandomMoments) {
     }
   }
   EXPECT_GE(resumed, 1);
-  const Result last = newest_checkpoint(out) < 0 ? run(out, {}) : run(out, {"--resume"});
+  const Result last = run(out, {newest_checkpoint(out) < 0 ? "--overwrite" : "--resume"});
   ASSERT_EQ(last.status, 0) << last.output;
   expect_same_results(straight(), out);
 }
@@ -122,7 +122,7 @@ TEST_F(Resume, AfterKillInTheMiddleOfWriting) {
   for (std::size_t k = 0; k < places.size(); ++k) {
     std::vector<std::string> more{"--threads", "2"};
     const int saved = newest_checkpoint(out);
-    if (saved >= 0) more.emplace_back("--resume");
+    more.emplace_back(saved >= 0 ? "--resume" : "--overwrite");
     const fs::path place = out / places[k];
     const auto writing = [&] {
       std::error_code error;
@@ -135,7 +135,7 @@ TEST_F(Resume, AfterKillInTheMiddleOfWriting) {
     for (const std::string& name : end_to_end::files_below(out)) left_behind += name.ends_with(".part");
   }
   if (left_behind == 0) std::printf("no kill hit a file while it was written\n");
-  const Result last = newest_checkpoint(out) < 0 ? run(out, {}) : run(out, {"--resume"});
+  const Result last = run(out, {newest_checkpoint(out) < 0 ? "--overwrite" : "--resume"});
   ASSERT_EQ(last.status, 0) << last.output;
   expect_same_results(straight(), out);
 }

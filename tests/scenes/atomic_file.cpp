@@ -104,6 +104,31 @@ TEST_F(AtomicFileTest, SeesAFullDisk) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
+TEST_F(AtomicFileTest, OnlyDraftsAreRemovedAsSuch) {
+  for (const char* name : {".frame_0001.ply.123-0.part", ".a.1-22.part"}) std::ofstream(path(name)) << "half";
+  for (const char* name : {"mine.part", ".mine.part", ".a.1-.part", ".a.-1.part", ".1-2.part", "a.1-2.part",
+                           ".a.1-2.part.txt", "film.part.mp4"})
+    std::ofstream(path(name)) << "mine";
+  remove_stale_drafts(folder_);
+  EXPECT_EQ(files_in_folder(), 8U);
+}
+
+TEST_F(AtomicFileTest, AnObserverKnowsOfFilesBeforeTheyHaveTheirNames) {
+  std::string seen;
+  observe_commits([&](const std::filesystem::path& file, const std::filesystem::path& draft, bool durable) {
+    seen += file.filename().string() + (std::filesystem::exists(file) ? " is there" : " is not there");
+    seen += durable ? " durable " : " ";
+    EXPECT_EQ(read_text(draft), "text");
+    if (file.filename() == "no.txt") throw RunError("not this one");
+  });
+  write_file(path("a.txt"), "text");
+  EXPECT_THROW(write_file(path("no.txt"), "text"), RunError);
+  observe_commits({});
+  write_file(path("b.txt"), "text");
+  EXPECT_EQ(seen, "a.txt is not there no.txt is not there ");
+  EXPECT_EQ(files_in_folder(), 2U);
+}
+
 TEST_F(AtomicFileTest, ThreadsThatWriteTheSameFileLeaveOneOfThem) {
   std::vector<std::thread> threads;
   for (int k = 0; k < 4; ++k)

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <exception>
 #include <new>
+#include <sstream>
 
 #include "common/errors.h"
 #include "common/thread_count.h"
 #include "sph/solver.h"
 #include "tools/commands/command.h"
 #include "tools/pipeline/interruption.h"
+#include "tools/report/messages.h"
 #include "tools/report/run_log.h"
 
 namespace flowskin::tools {
@@ -103,7 +105,7 @@ int run_chosen(int argc, const char* const* argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 done; 1 the run failed; 2 the input or the command line is wrong; 130, 143 or 129 interrupted by "
-      "Ctrl-C, SIGTERM or SIGHUP (--resume goes on).\n"
+      "Ctrl-C, SIGTERM or, with --stop-on-hangup, SIGHUP (--resume goes on).\n"
       "`flowskin COMMAND --help` lists a command's options.");
   const std::vector<Command> all = commands();
   std::vector<const CLI::App*> added;
@@ -112,21 +114,22 @@ int run_chosen(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kInputWrong;
+    std::ostringstream help, complaint;
+    const int status = app.exit(error, help, complaint);
+    put(help.str());
+    say(complaint.str());
+    return status == 0 ? kDone : kInputWrong;
   }
   const auto chosen = std::find_if(added.begin(), added.end(), [](const CLI::App* one) { return one->parsed(); });
   return all[static_cast<std::size_t>(chosen - added.begin())].run(as_typed(argc, argv));
 }
 
 int complain(const char* message, int status) {
-  fmt::print(stderr, "flowskin: {}\n", message);
+  say_line(std::string("flowskin: ") + message);
   return status;
 }
 
-}  // namespace
-
-int run_program(int argc, const char* const* argv) {
-  use_threads(0);
+int run_guarded(int argc, const char* const* argv) {
   try {
     return run_chosen(argc, argv);
   } catch (const InterruptedError& error) {
@@ -138,8 +141,19 @@ int run_program(int argc, const char* const* argv) {
   } catch (const std::bad_alloc&) {
     return complain("out of memory: use fewer particles (a larger spacing) or a larger edge_length", kRunFailed);
   } catch (const std::exception& error) {
-    return complain(plain_message(error).c_str(), kRunFailed);
+    return complain(plain_message(error).c_str(), interrupted() ? InterruptedError::exit_status() : kRunFailed);
   }
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  secure_standard_streams();
+  use_threads(0);
+  const int status = run_guarded(argc, argv);
+  const std::string failure = output_failure();
+  if (failure.empty()) return status;
+  return complain(("cannot write to standard output: " + failure).c_str(), status == kDone ? kRunFailed : status);
 }
 
 }  // namespace flowskin::tools

@@ -9,6 +9,7 @@
 #include "scenes/scene_file.h"
 #include "tools/commands/command.h"
 #include "tools/pipeline/tracker_bridge.h"
+#include "tools/report/messages.h"
 
 namespace flowskin::tools {
 
@@ -38,8 +39,8 @@ int describe_all(const std::vector<std::filesystem::path>& files) {
   bool sound = true;
   for (const auto& file : files) {
     const scenes::FileInfo info = file.extension() == ".json" ? describe_scene(file) : scenes::describe_file(file);
-    fmt::print("{}\n", file.string());
-    for (const std::string& line : info.lines) fmt::print("  {}\n", line);
+    put(file.string() + "\n");
+    for (const std::string& line : info.lines) put("  " + line + "\n");
     sound = sound && info.sound;
   }
   if (!sound) throw InputError("not every file is sound; the lines above say what is wrong");

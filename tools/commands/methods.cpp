@@ -5,6 +5,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/experiments/flow_table.h"
+#include "tools/report/messages.h"
 #include "tracking/velocity/velocity_method.h"
 
 namespace flowskin::tools {
@@ -16,11 +17,11 @@ Command methods_command() {
           {{"--table", table.get(), "Their errors on flows that are known everywhere (Markdown)"}},
           [table](const std::string&) {
             if (*table) {
-              fmt::print("{}", flow_table());
+              put(flow_table());
               return 0;
             }
             for (const auto& method : tracking::velocity_methods())
-              fmt::print("{:<18} {}\n", method.name, method.summary);
+              put(fmt::format("{:<18} {}\n", method.name, method.summary));
             return 0;
           }};
 }

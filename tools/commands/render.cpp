@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "common/errors.h"
 #include "common/thread_count.h"
@@ -12,7 +13,10 @@
 #include "tools/commands/shared_options.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/pipeline/picture_maker.h"
+#include "tools/pipeline/run_folder.h"
+#include "tools/pipeline/run_record.h"
 #include "tools/pipeline/tracker_bridge.h"
+#include "tools/report/messages.h"
 #include "tools/report/progress.h"
 #include "tools/textures/texture_mapping.h"
 
@@ -112,11 +116,18 @@ int render(const RenderOptions& options) {
   scenes::Scene scene = scenes::read_scene(directory.scene());
   override_settings(options, scene.render);
   catch_interruptions();
+  // Pictures are added to the record of what FlowSkin has written, where there is one.
+  const RunFolder folder(directory);
+  std::optional<RunRecorder> recorder;
+  if (folder.has_record()) {
+    folder.check_may_go_on();
+    recorder.emplace(directory, RunRecorder::Work::pictures);
+  }
   Redraw(options, scene, directory).draw();
   make_contact_sheet(directory, scene.frame_rate);
   if (!options.no_video)
     make_videos(directory, scene.frame_rate, [&](const std::string& line) {
-      if (!options.quiet) fmt::print(stderr, "{}\n", line);
+      if (!options.quiet) say_line(line);
     });
   return 0;
 }

@@ -15,7 +15,7 @@ Command run_command() {
   RunOptions& run = chosen->run;
   const std::vector<Option> options{
       {"scene", &run.scene_file, "Scene file (JSON); see docs/scenes.md", {.is_required = true}},
-      {"--out", &run.out, "Run directory (default: output/<name of the scene file>)"},
+      {"--out", &run.out, "Run directory (default: output/<name of the scene file>); see --overwrite"},
       {"--frames", &run.frames, "Number of frames after the first (default: the scene's)", {.range = {{0, 1000000}}}},
       velocity_option(run.velocity, "the scene's"),
       {"--compare", &run.compare,
@@ -24,6 +24,8 @@ Command run_command() {
       threads_option(run.threads),
       {"--resume", &run.resume,
        "Go on from the last checkpoint in the run directory, as if the run had never stopped; see docs/restart.md"},
+      overwrite_option(run),
+      hangup_option(run),
       chosen->pictures.pictures_option(),
       chosen->pictures.video_option(),
       {"--quiet", &run.quiet, "No progress; warnings and errors only"},

@@ -5,15 +5,16 @@
 
 #include "scenes/scene_file.h"
 #include "tools/commands/command.h"
+#include "tools/report/messages.h"
 
 namespace flowskin::tools {
 
 namespace {
 
 void print_keys() {
-  fmt::print("| Key | Type | Unit | Default | Meaning |\n|---|---|---|---|---|\n");
+  put("| Key | Type | Unit | Default | Meaning |\n|---|---|---|---|---|\n");
   for (const auto& key : scenes::scene_keys())
-    fmt::print("| `{}` | {} | {} | `{}` | {} |\n", key.path, key.type, key.unit, key.default_value, key.meaning);
+    put(fmt::format("| `{}` | {} | {} | `{}` | {} |\n", key.path, key.type, key.unit, key.default_value, key.meaning));
 }
 
 }  // namespace
@@ -30,7 +31,7 @@ Command scene_command() {
   return {"scene", "Describe the scene file", options,
           [chosen](const std::string&) {
             if (chosen->defaults)
-              fmt::print("{}\n", scenes::write_scene(scenes::Scene{}));
+              put(scenes::write_scene(scenes::Scene{}) + "\n");
             else
               print_keys();
             return 0;

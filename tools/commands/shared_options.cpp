@@ -20,4 +20,17 @@ Option velocity_option(std::optional<std::string>& velocity, const std::string& 
       "--velocity", &velocity, "Velocity method (default: " + standard + "); see `flowskin methods`", {.words = names}};
 }
 
+Option overwrite_option(RunOptions& run) {
+  return {"--overwrite",
+          &run.overwrite,
+          "Replace the run in the run directory: the files that FlowSkin wrote, no others. Not needed in the default "
+          "directory after a finished run of the same scene whose files nobody changed; see docs/files.md",
+          {.excludes = "--resume"}};
+}
+
+Option hangup_option(RunOptions& run) {
+  return {"--stop-on-hangup", &run.stop_on_hangup,
+          "Stop when the terminal is closed (SIGHUP), as on SIGTERM; otherwise the run saves a checkpoint and goes on"};
+}
+
 }  // namespace flowskin::tools

@@ -12,6 +12,10 @@ Option threads_option(int& threads, const std::string& help = "Threads (default:
 /// @param standard what is taken where it is not given, in words
 Option velocity_option(std::optional<std::string>& velocity, const std::string& standard);
 
+/// To stand behind --resume.
+Option overwrite_option(RunOptions& run);
+Option hangup_option(RunOptions& run);
+
 /// What --no-pictures and --no-video say of a run.
 struct PictureFlags {
   bool no_pictures = false, no_video = false;

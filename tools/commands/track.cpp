@@ -14,6 +14,7 @@
 #include "tools/pipeline/run_scene.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/render/camera.h"
+#include "tools/report/messages.h"
 
 namespace flowskin::tools {
 
@@ -38,11 +39,11 @@ struct TrackOptions {
 /// A radius in the files is believed where the spacing by it is within this factor of the distances found.
 constexpr double kLargestDisagreement = 2;
 
-void say(const TrackOptions& options, const std::string& line) {
-  if (!options.run.quiet) fmt::print(stderr, "{}\n", line);
+void tell(const TrackOptions& options, const std::string& line) {
+  if (!options.run.quiet) say_line(line);
 }
 
-void warn(const std::string& line) { fmt::print(stderr, "warning: {}\n", line); }
+void warn(const std::string& line) { say_line("warning: " + line); }
 
 /// Spacing as given, from the radius in the files, or from the distances in the first file that says something.
 double spacing_of(const TrackOptions& options, const ParticleSequence& sequence) {
@@ -55,7 +56,7 @@ double spacing_of(const TrackOptions& options, const ParticleSequence& sequence)
   const bool agree =
       estimate > 0 && by_radius < kLargestDisagreement * estimate && estimate < kLargestDisagreement * by_radius;
   if (by_radius > 0 && (agree || !(estimate > 0))) {
-    say(options, fmt::format("spacing: {:.4g} m, twice the radius in the files", by_radius));
+    tell(options, fmt::format("spacing: {:.4g} m, twice the radius in the files", by_radius));
     return by_radius;
   }
   if (!(estimate > 0))
@@ -65,8 +66,8 @@ double spacing_of(const TrackOptions& options, const ParticleSequence& sequence)
   if (by_radius > 0)
     warn(fmt::format("the files say radius {:.4g} m, but neighbours are {:.4g} m apart: --spacing settles it",
                      by_radius / 2, estimate));
-  say(options,
-      fmt::format("spacing: {:.4g} m, estimated from the distances of neighbours (--spacing settles it)", estimate));
+  tell(options,
+       fmt::format("spacing: {:.4g} m, estimated from the distances of neighbours (--spacing settles it)", estimate));
   return estimate;
 }
 
@@ -185,18 +186,19 @@ scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) 
 int track(const TrackOptions& options) {
   ParticleSequence sequence = scenes::open_sequence(recorded_spec(options), current_folder());
   for (const std::string& warning : sequence.warnings) warn(warning);
-  say(options, fmt::format("{} files from {}, one every {:.6g} s", sequence.files.size(),
-                           sequence.files.front().string(), sequence.interval));
-  for (const std::string& note : sequence.notes) say(options, note);
+  tell(options, fmt::format("{} files from {}, one every {:.6g} s", sequence.files.size(),
+                            sequence.files.front().string(), sequence.interval));
+  for (const std::string& note : sequence.notes) tell(options, note);
   RunOptions run = options.run;
   scenes::Scene scene = scene_of(options, sequence);
   run.frames = scene.frames;
-  if (run.out.empty()) run.out = fs::path("output") / scene.name;
+  run.out_is_default = run.out.empty();
+  if (run.out_is_default) run.out = fs::path("output") / scene.name;
   const double spacing = scene.particles.spacing;
-  say(options,
-      fmt::format("effective radius {:.4g} m ({:.3g} spacings), edge length {:.4g} m ({:.3g} spacings), velocity {}",
-                  scene.tracking.field.radius * spacing, scene.tracking.field.radius,
-                  scene.tracking.edge_length * spacing, scene.tracking.edge_length, scene.tracking.velocity));
+  tell(options,
+       fmt::format("effective radius {:.4g} m ({:.3g} spacings), edge length {:.4g} m ({:.3g} spacings), velocity {}",
+                   scene.tracking.field.radius * spacing, scene.tracking.field.radius,
+                   scene.tracking.edge_length * spacing, scene.tracking.edge_length, scene.tracking.velocity));
   // As if read from a file: every value is checked, and scene.json in the run directory repeats this run.
   run_scene(scenes::parse_scene(scenes::write_scene(scene), "the options of flowskin track", scene.directory), run);
   return 0;
@@ -210,7 +212,7 @@ std::vector<Option> files_options(TrackOptions& chosen) {
        "Files, a pattern in quotes such as 'run/p_*.vtp' or p_%04d.ply, a folder, or one .pvd; columns x, y, z and, "
        "where there are any, velocity, id, radius",
        {.is_required = true}},
-      {"--out", &chosen.run.out, "Run directory (default: output/track_<name of the files>)"},
+      {"--out", &chosen.run.out, "Run directory (default: output/track_<name of the files>); see --overwrite"},
       {"--spacing",
        &chosen.spacing,
        "Distance of neighbouring particles (m; default: from the radius in the files, else estimated)",
@@ -249,6 +251,8 @@ std::vector<Option> looks_options(TrackOptions& chosen) {
       threads_option(chosen.run.threads),
       {"--resume", &chosen.run.resume,
        "Go on from the last checkpoint in the run directory; more files may have come; see docs/restart.md"},
+      overwrite_option(chosen.run),
+      hangup_option(chosen.run),
       chosen.pictures.pictures_option(),
       chosen.pictures.video_option(),
       {"--quiet", &chosen.run.quiet, "No progress; warnings and errors only"},

@@ -16,9 +16,24 @@
 
 namespace flowskin::tools {
 
-FrameLoop::FrameLoop(const RunOptions& options, RunStart start, const RunDirectory& directory, Checkpoint* resumed)
+namespace {
+
+std::string command_to_resume(const RunOptions& options) {
+  if (options.resume) return options.command_line;
+  const std::string overwrite = " --overwrite";
+  std::string command = options.command_line + " ";
+  if (const auto place = command.find(overwrite + " "); place != std::string::npos)
+    command.erase(place, overwrite.size());
+  return command + "--resume";
+}
+
+}  // namespace
+
+FrameLoop::FrameLoop(const RunOptions& options, RunStart start, const RunDirectory& directory, RunRecorder& recorder,
+                     Checkpoint* resumed)
     : options_(options),
       directory_(directory),
+      recorder_(recorder),
       log_(directory.log(), options.quiet, resumed != nullptr),
       checkpoints_(directory, checkpoint_header(start, options.compare), start.scene.output.checkpoint_interval),
       scene_(std::move(start.scene)),
@@ -91,7 +106,7 @@ void FrameLoop::go_through_frames(Progress& progress) {
     ++frame_;
     steps_done_ = 0;
     save_regularly();
-    if (interrupted() && frame_ <= scene_.frames) stop();
+    if (frame_ <= scene_.frames) pause();
   }
 }
 
@@ -103,7 +118,8 @@ void FrameLoop::advance() {
 
 /// Particles, surface, and what is compared with it.
 void FrameLoop::step_to(double time) {
-  if (!clock_.stages.time("source", [&] { return source_->advance_towards(time, interrupted); })) stop();
+  const auto is_due = [&] { return is_to_pause(); };
+  while (!clock_.stages.time("source", [&] { return source_->advance_towards(time, is_due); })) pause();
   ++steps_done_;
   if (!surface_) return;
   const tracking::Particles particles = surface_->with_textures(source_->state());
@@ -112,7 +128,7 @@ void FrameLoop::step_to(double time) {
   table_.add_step(surface_->tracker().report());
   if (const std::string warning = surface_->warning(); !warning.empty()) log_.warning(warning);
   if (comparison_) comparison_->advance(particles, clock_.stages.seconds("tracking") - tracked_before);
-  if (interrupted()) stop();
+  pause();
 }
 
 /// Files, pictures and numbers of the frame.
@@ -131,6 +147,19 @@ void FrameLoop::record() {
                             table_.statistics().last_reason()));
 }
 
+/// Whether a signal has come.
+bool FrameLoop::is_to_pause() const { return interrupted() || hung_up(); }
+
+/// At a safe point: the run stops where it has been asked to, and saves where the terminal is gone.
+void FrameLoop::pause() {
+  if (interrupted()) stop();
+  if (!hung_up()) return;
+  note_hangup();
+  log_.info(
+      fmt::format("SIGHUP (the terminal is closed): the run goes on; frame {} of {} is next", frame_, scene_.frames));
+  if (checkpoints_.are_wanted()) try_to_save();
+}
+
 /// After a whole frame, or between two.
 void FrameLoop::save() {
   clock_.stages.time("checkpoints", [&] {
@@ -143,7 +172,10 @@ void FrameLoop::save() {
 
 /// A run does not end because it cannot be resumed: where the disk is full, the next frame will tell.
 void FrameLoop::save_regularly() {
-  if (!checkpoints_.is_due(frame_ - 1, scene_.frames)) return;
+  if (checkpoints_.is_due(frame_ - 1, scene_.frames)) try_to_save();
+}
+
+void FrameLoop::try_to_save() {
   try {
     save();
   } catch (const RunError& error) {
@@ -184,12 +216,12 @@ void FrameLoop::fail(const std::exception& error) {
 std::string FrameLoop::what_is_kept() const {
   if (table_.rows().empty()) return "no frame was finished";
   const std::string root = directory_.root().string();
+  if (std::string loss = recorder_.loss(); !loss.empty()) return loss;
   const std::string kept =
       fmt::format("frames 0 to {} are whole in {}; `flowskin render {}` makes their pictures and videos",
                   table_.rows().back().frame, root, root);
   if (checkpoints_.saved() < 0) return kept;
-  return kept + fmt::format("\nto go on after frame {}: {}{}", checkpoints_.saved(), options_.command_line,
-                            options_.resume ? "" : " --resume");
+  return kept + fmt::format("\nto go on after frame {}: {}", checkpoints_.saved(), command_to_resume(options_));
 }
 
 /// Videos, plots, and what the log says of the whole run.
@@ -204,6 +236,7 @@ void FrameLoop::finish() {
   checkpoints_.mark_complete(scene_.frames);
   log_.info("done: " + directory_.root().string());
   if (!log_.failure().empty()) log_.warning("log.txt is not complete: " + log_.failure());
+  recorder_.finish(scene_.frames);
 }
 
 }  // namespace flowskin::tools

@@ -15,6 +15,7 @@
 #include "tools/pipeline/run_checkpoints.h"
 #include "tools/pipeline/run_directory.h"
 #include "tools/pipeline/run_options.h"
+#include "tools/pipeline/run_record.h"
 #include "tools/pipeline/run_start.h"
 #include "tools/pipeline/tracked_surface.h"
 #include "tools/report/progress.h"
@@ -26,9 +27,11 @@ namespace flowskin::tools {
 /// Carries a run from frame to frame: advance() and record() do the work of one.
 class FrameLoop {
  public:
+  /// @param recorder is told when the run is done
   /// @param resumed the checkpoint that the run goes on from; null: from the start. Is looked at here only.
   /// @throws InputError where the checkpoint does not fit; RunError where files cannot be written
-  FrameLoop(const RunOptions& options, RunStart start, const RunDirectory& directory, Checkpoint* resumed);
+  FrameLoop(const RunOptions& options, RunStart start, const RunDirectory& directory, RunRecorder& recorder,
+            Checkpoint* resumed);
 
   /// Settings that differ from those of the run that is resumed.
   void tell_changes(const std::vector<std::string>& changes) {
@@ -53,8 +56,11 @@ class FrameLoop {
   void advance();
   void step_to(double time);
   void record();
+  bool is_to_pause() const;
+  void pause();
   void save();
   void save_regularly();
+  void try_to_save();
   [[noreturn]] void stop();
   [[noreturn]] void fail(const std::exception& error);
   std::string what_is_kept() const;
@@ -64,6 +70,7 @@ class FrameLoop {
 
   const RunOptions& options_;
   const RunDirectory& directory_;
+  RunRecorder& recorder_;
   RunLog log_;
   RunClock clock_;
   RunCheckpoints checkpoints_;

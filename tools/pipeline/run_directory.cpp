@@ -3,11 +3,15 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
+#include <optional>
+#include <string_view>
 
 #include "common/errors.h"
 #include "scenes/io/atomic_file.h"
@@ -22,7 +26,60 @@ std::string numbered(const std::string& prefix, int frame, const std::string& ex
   return fmt::format("{}{:04}{}", prefix, frame, extension);
 }
 
+/// A name that a frame's number stands in.
+struct NumberedName {
+  std::string_view before, after;
+};
+
+constexpr std::array kNumberedNames{
+    NumberedName{"surface/frame_", ".obj"},    NumberedName{"surface/frame_", ".ply"},
+    NumberedName{"surface/frame_", ".vtp"},    NumberedName{"particles/frame_", ".ply"},
+    NumberedName{"particles/frame_", ".vtp"},  NumberedName{"images/frame_", ".png"},
+    NumberedName{"images/particles_", ".png"}, NumberedName{"images/compare_", ".png"},
+    NumberedName{"checkpoint/frame_", ".bin"},
+};
+
+constexpr std::array<std::string_view, 18> kPlainNames{
+    RunDirectory::kRecordName,
+    "scene.json",
+    "log.txt",
+    "frames.csv",
+    "contact_sheet.png",
+    "surface.mp4",
+    "particles.mp4",
+    "compare.csv",
+    "compare.md",
+    "compare.svg",
+    "compare.png",
+    "compare_sheet.png",
+    "compare.mp4",
+    "surface/texture.png",
+    "surface/surface.mtl",
+    "surface/surface.pvd",
+    "particles/particles.pvd",
+    "checkpoint/complete.txt",
+};
+
+/// The number between the two; a checkpoint on the way to the first frame has -1.
+std::optional<int> number_in(std::string_view name, std::string_view before, std::string_view after) {
+  if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
+    return std::nullopt;
+  name.remove_prefix(before.size());
+  name.remove_suffix(after.size());
+  int number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  return number;
+}
+
 }  // namespace
+
+bool RunDirectory::is_name_of_run(const std::string& name) {
+  return std::find(kPlainNames.begin(), kPlainNames.end(), name) != kPlainNames.end() ||
+         std::any_of(kNumberedNames.begin(), kNumberedNames.end(), [&](const NumberedName& numbered) {
+           return number_in(name, numbered.before, numbered.after).has_value();
+         });
+}
 
 fs::path RunDirectory::surface(int frame, const std::string& extension) const {
   return surface_folder() / numbered("frame_", frame, extension);
@@ -37,57 +94,66 @@ fs::path RunDirectory::particle_image(int frame) const {
 
 fs::path RunDirectory::compare_image(int frame) const { return image_folder() / numbered("compare_", frame, ".png"); }
 
-void RunDirectory::prepare() const {
-  try {
-    if (fs::exists(root_) && !fs::is_directory(root_))
-      throw InputError(fmt::format("{} is a file; --out needs a folder", root_.string()));
-    if (fs::exists(root_) && !fs::is_empty(root_)) {
-      if (!fs::exists(scene()) && !fs::exists(log()))
-        throw InputError(fmt::format("{} is not empty and holds no earlier run; give an empty or new folder to --out",
-                                     root_.string()));
-      for (const fs::path& old :
-           {surface_folder(), particle_folder(), image_folder(), checkpoint_folder(), scene(), log(), frames_csv(),
-            contact_sheet(), surface_video(), particle_video(), compare_csv(), compare_markdown(), compare_sheet(),
-            compare_video(), root_ / "compare.svg", root_ / "compare.png"})
-        fs::remove_all(old);
-    }
-    for (const fs::path& folder : folders()) fs::create_directories(folder);
-    scenes::remove_stale_drafts(root_);
-  } catch (const fs::filesystem_error& error) {
-    throw RunError(fmt::format("cannot prepare the folder {}: {}", root_.string(), error.code().message()));
-  }
-}
-
 std::vector<fs::path> RunDirectory::folders() const {
   return {surface_folder(), particle_folder(), image_folder(), checkpoint_folder()};
 }
 
-void RunDirectory::prepare_to_resume() const {
+void RunDirectory::make_folders() const {
   try {
+    scenes::remove_stale_drafts(root_);
     for (const fs::path& folder : folders()) {
       fs::create_directories(folder);
       scenes::remove_stale_drafts(folder);
     }
-    scenes::remove_stale_drafts(root_);
   } catch (const fs::filesystem_error& error) {
     throw RunError(fmt::format("cannot prepare the folder {}: {}", root_.string(), error.code().message()));
   }
 }
 
 RunLock::~RunLock() {
+  std::error_code ignored;
+  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, ignored);
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void RunLock::take(const RunDirectory& directory) {
-  if (descriptor_ >= 0) return;
-  descriptor_ = ::open(directory.root().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  ::close(descriptor_);
-  descriptor_ = -1;
-  throw InputError(
-      fmt::format("another flowskin is already writing into {}; wait for it, stop it, or give another folder "
-                  "to --out",
-                  directory.root().string()));
+void RunLock::create(const RunDirectory& directory) {
+  const fs::path& root = directory.root();
+  std::error_code ignored;
+  if (fs::exists(root, ignored) && !fs::is_directory(root, ignored))
+    throw InputError(fmt::format("{} is a file; --out needs a folder", root.string()));
+  try {
+    do {
+      std::vector<fs::path> missing;
+      for (fs::path folder = root; !folder.empty() && !fs::exists(folder); folder = folder.parent_path())
+        missing.insert(missing.begin(), folder);
+      for (const fs::path& folder : missing)
+        if (fs::create_directory(folder)) made_.push_back(folder);
+      // Another process may remove the folder that it has made, between here and there.
+    } while (!take(directory));
+  } catch (const fs::filesystem_error& error) {
+    throw RunError(fmt::format("cannot prepare the folder {}: {}", root.string(), error.code().message()));
+  }
+}
+
+bool RunLock::take(const RunDirectory& directory) {
+  const int descriptor = ::open(directory.root().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return errno != ENOENT;
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(descriptor);
+    throw InputError(
+        fmt::format("another flowskin is already writing into {}; wait for it, stop it, or give another folder "
+                    "to --out",
+                    directory.root().string()));
+  }
+  struct stat locked {
+  }, present{};
+  if (::fstat(descriptor, &locked) != 0 || ::stat(directory.root().c_str(), &present) != 0 ||
+      locked.st_dev != present.st_dev || locked.st_ino != present.st_ino) {
+    ::close(descriptor);
+    return false;
+  }
+  descriptor_ = descriptor;
+  return true;
 }
 
 void RunDirectory::check_is_run() const {
@@ -102,15 +168,7 @@ std::vector<int> RunDirectory::frames_in(const fs::path& folder, const std::stri
   std::vector<int> frames;
   if (!fs::is_directory(folder)) return frames;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.size() <= prefix.size() + extension.size() || name.rfind(prefix, 0) != 0 ||
-        entry.path().extension() != extension)
-      continue;
-    const char* first = name.data() + prefix.size();
-    const char* last = name.data() + name.size() - extension.size();
-    int frame = 0;
-    if (const auto [end, error] = std::from_chars(first, last, frame); error == std::errc() && end == last)
-      frames.push_back(frame);
+    if (const auto frame = number_in(entry.path().filename().string(), prefix, extension)) frames.push_back(*frame);
   }
   std::sort(frames.begin(), frames.end());
   return frames;

@@ -9,6 +9,7 @@
 #include "scenes/scene_checks.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/make_source.h"
+#include "scenes/sources/particle_sequence.h"
 #include "tools/pipeline/input_files.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/report/run_log.h"
@@ -16,6 +17,8 @@
 #include "tools/textures/texture_mapping.h"
 
 namespace flowskin::tools {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -57,22 +60,30 @@ CheckpointHeader checkpoint_header(const RunStart& start, const std::string& com
   return {version_text(), scenes::write_scene(start.scene), start.files, compare};
 }
 
-void check_inputs_stay(const scenes::Scene& scene, const RunDirectory& directory) {
-  if (scene.particles.source != scenes::ParticlesSpec::Source::recorded) return;
-  namespace fs = std::filesystem;
-  for (const std::string& name : scene.particles.recorded.files) {
-    const fs::path file = scenes::absolute_name(scene.directory, name);
-    std::error_code error;
-    const fs::path folder = fs::weakly_canonical(fs::is_directory(file, error) ? file : file.parent_path(), error);
-    for (const fs::path& cleared :
-         {directory.particle_folder(), directory.surface_folder(), directory.image_folder()}) {
-      if (fs::weakly_canonical(cleared, error) == folder)
-        throw InputError(
-            fmt::format("{} holds the particles to be tracked, and a run into {} would remove them; give "
-                        "another folder to --out",
-                        folder.string(), directory.root().string()));
-    }
-  }
+std::vector<fs::path> files_needed(const scenes::Scene& scene, const fs::path& scene_file) {
+  std::vector<fs::path> files;
+  const auto add = [&](const std::string& name) {
+    if (!name.empty()) files.emplace_back(scenes::absolute_name(scene.directory, name));
+  };
+  if (!scene_file.empty()) files.push_back(scene_file);
+  for (const auto& spec : scene.bodies) add(spec.mesh.file);
+  for (const auto& spec : scene.emitters) add(spec.mesh.file);
+  for (const auto& spec : scene.sinks) add(spec.mesh.file);
+  for (const auto& spec : scene.boundaries) add(spec.mesh.file);
+  add(scene.texture.image);
+  if (scene.particles.source == scenes::ParticlesSpec::Source::recorded)
+    for (fs::path& file : scenes::sequence_files(scene.particles.recorded, scene.directory))
+      files.push_back(std::move(file));
+  return files;
+}
+
+std::string run_name(const scenes::Scene& scene, const fs::path& scene_file) {
+  std::error_code error;
+  if (!scene_file.empty()) return fs::weakly_canonical(fs::absolute(scene_file), error).string();
+  std::string name = "tracked on";
+  for (const std::string& file : scene.particles.recorded.files)
+    name += " " + scenes::absolute_name(scene.directory, file);
+  return name;
 }
 
 }  // namespace flowskin::tools

@@ -1,74 +1,22 @@
 #include "tools/render/video.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
+#include <string_view>
 #include <system_error>
 
 #include "common/errors.h"
+#include "scenes/io/atomic_file.h"
+#include "tools/render/child_process.h"
 
 namespace flowskin::tools {
 namespace {
 
 namespace fs = std::filesystem;
-
-// What a child process left behind.
-struct Outcome {
-  int status = -1;     // exit status; -1 where it was killed or never ran
-  std::string errors;  // its standard error
-};
-
-std::string read_all(int descriptor) {
-  std::string text;
-  std::array<char, 4096> buffer{};
-  for (;;) {
-    const ssize_t got = ::read(descriptor, buffer.data(), buffer.size());
-    if (got > 0) text.append(buffer.data(), std::size_t(got));
-    if (got == 0 || (got < 0 && errno != EINTR)) return text;
-  }
-}
-
-// Runs a program found on the path, without a shell: arguments may contain anything.
-Outcome run_program(const std::vector<std::string>& arguments) {
-  std::vector<char*> argv;
-  argv.reserve(arguments.size() + 1);
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0)
-    throw RunError(fmt::format("no pipe to {}: {}", arguments[0], std::strerror(errno)));
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  ::close(ends[1]);
-  Outcome outcome;
-  if (error != 0) {
-    outcome.errors = std::strerror(error);
-  } else {
-    outcome.errors = read_all(ends[0]);
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    if (WIFEXITED(status)) outcome.status = WEXITSTATUS(status);
-  }
-  ::close(ends[0]);
-  return outcome;
-}
 
 std::string last_lines(const std::string& text, int count) {
   std::size_t begin = text.find_last_not_of('\n');
@@ -168,15 +116,12 @@ void encode_video(const fs::path& pattern, double frame_rate, const fs::path& fi
                     "the pictures are in {}",
                     file.string(), pattern.parent_path().string()));
   }
-  fs::path aside = fs::absolute(file);
-  aside.replace_extension(".part.mp4");
-  const Outcome outcome = run_program(ffmpeg_arguments(pattern, frame_rate, aside));
-  std::error_code error;
-  if (outcome.status == 0) fs::rename(aside, file, error);
-  if (outcome.status == 0 && !error) return;
-  const std::string reason = error ? error.message() : last_lines(outcome.errors, 4);
-  fs::remove(aside, error);
-  throw RunError(fmt::format("{} was not made from {}: ffmpeg failed:\n{}", file.string(), pattern.string(), reason));
+  scenes::AtomicFile draft(file);
+  const ChildOutcome outcome = run_child(ffmpeg_arguments(pattern, frame_rate, fs::absolute(draft.draft())));
+  if (outcome.status != 0)
+    throw RunError(fmt::format("{} was not made from {}: ffmpeg failed:\n{}", file.string(), pattern.string(),
+                               last_lines(outcome.errors, 4)));
+  draft.commit();
 }
 
 }  // namespace flowskin::tools

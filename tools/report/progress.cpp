@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "tools/report/messages.h"
 #include "tools/report/stage_clock.h"
 
 namespace flowskin::tools {
@@ -46,18 +46,17 @@ void Progress::update(int done, const std::string& details) {
                                : std::string("starting");
   std::string line = fmt::format("{} {}/{}  {}  {}", unit_, done, total_, details, left);
   if (!terminal_) {
-    fmt::print(stderr, "{}\n", line);
+    say_line(line);
     return;
   }
   const std::size_t length = line.size();
   line.append(last_length_ > length ? last_length_ - length : 0, ' ');
   last_length_ = length;
-  fmt::print(stderr, "\r{}", line);
-  std::fflush(stderr);
+  say("\r" + line);
 }
 
 void Progress::finish() {
-  if (!quiet_ && terminal_ && last_length_ > 0) fmt::print(stderr, "\n");
+  if (!quiet_ && terminal_ && last_length_ > 0) say("\n");
   last_length_ = 0;
 }
 

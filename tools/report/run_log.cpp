@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <spdlog/sinks/basic_file_sink.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
@@ -11,14 +10,15 @@
 #include <fstream>
 
 #include "common/errors.h"
+#include "tools/report/messages.h"
 
 namespace flowskin::tools {
 
 struct RunLog::Impl {
   std::shared_ptr<spdlog::sinks::basic_file_sink_st> file;
-  std::shared_ptr<spdlog::sinks::stderr_sink_st> terminal;
   std::unique_ptr<spdlog::logger> logger;
   std::string failure;
+  bool quiet = false;
 };
 
 RunLog::RunLog(const std::filesystem::path& file, bool quiet, bool append) : impl_(std::make_unique<Impl>()) {
@@ -28,10 +28,8 @@ RunLog::RunLog(const std::filesystem::path& file, bool quiet, bool append) : imp
     throw RunError(fmt::format("cannot write the log {}: {}", file.string(), error.what()));
   }
   impl_->file->set_pattern("%Y-%m-%d %H:%M:%S  %v");
-  impl_->terminal = std::make_shared<spdlog::sinks::stderr_sink_st>();
-  impl_->terminal->set_pattern("%v");
-  impl_->terminal->set_level(quiet ? spdlog::level::warn : spdlog::level::info);
-  impl_->logger = std::make_unique<spdlog::logger>("run", spdlog::sinks_init_list{impl_->file, impl_->terminal});
+  impl_->quiet = quiet;
+  impl_->logger = std::make_unique<spdlog::logger>("run", impl_->file);
   impl_->logger->set_level(spdlog::level::debug);
   impl_->logger->flush_on(spdlog::level::debug);
   impl_->logger->set_error_handler([impl = impl_.get()](const std::string& what) { impl->failure = what; });
@@ -39,9 +37,15 @@ RunLog::RunLog(const std::filesystem::path& file, bool quiet, bool append) : imp
 
 RunLog::~RunLog() = default;
 
-void RunLog::info(const std::string& message) { impl_->logger->info("{}", message); }
+void RunLog::info(const std::string& message) {
+  if (!impl_->quiet) say_line(message);
+  impl_->logger->info("{}", message);
+}
 void RunLog::detail(const std::string& message) { impl_->logger->debug("{}", message); }
-void RunLog::warning(const std::string& message) { impl_->logger->warn("{}", message); }
+void RunLog::warning(const std::string& message) {
+  say_line(message);
+  impl_->logger->warn("{}", message);
+}
 const std::string& RunLog::failure() const { return impl_->failure; }
 
 std::string version_text() { return "flowskin " FLOWSKIN_VERSION; }

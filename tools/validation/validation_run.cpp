@@ -9,6 +9,7 @@
 #include "common/thread_count.h"
 #include "scenes/io/atomic_file.h"
 #include "sph/solver.h"
+#include "tools/report/messages.h"
 #include "tools/report/run_log.h"
 #include "tools/report/stage_clock.h"
 
@@ -131,7 +132,7 @@ bool run_validation(const ValidateOptions& options) {
   const std::vector<ValidationCase> cases = chosen_cases(options);
   if (options.list) {
     for (const ValidationCase& one : cases)
-      fmt::print("{:<20} {:<6} {}\n", one.name, one.quick ? "quick" : "long", one.title);
+      put(fmt::format("{:<20} {:<6} {}\n", one.name, one.quick ? "quick" : "long", one.title));
     return true;
   }
   use_threads(options.threads);
@@ -144,15 +145,14 @@ bool run_validation(const ValidateOptions& options) {
     all_hold = all_hold && outcome.holds();
     write_outcome(outcome, options.out);
     if (!options.quiet) {
-      fmt::print("{:<20} {} ({:.1f} s)\n", one.name, outcome.holds() ? "holds" : "FAILED", outcome.seconds);
+      put(fmt::format("{:<20} {} ({:.1f} s)\n", one.name, outcome.holds() ? "holds" : "FAILED", outcome.seconds));
       std::fflush(stdout);
     }
   }
   scenes::write_file(options.out / "validation.csv", outcome_table(outcomes).csv());
   scenes::write_file(options.out / "validation.md", report_text(cases, outcomes, options.resolution));
-  fmt::print("\n{}", outcome_text(outcomes));
-  fmt::print("\n{}; plots and numbers are in {}\n", all_hold ? "all figures hold" : "some figures FAILED",
-             options.out.string());
+  put(fmt::format("\n{}\n{}; plots and numbers are in {}\n", outcome_text(outcomes),
+                  all_hold ? "all figures hold" : "some figures FAILED", options.out.string()));
   return all_hold;
 }
 
