@@ -148,7 +148,14 @@ class TrackerImpl {
       restart();
     } else {
       advect(particles);
-      fit_to_field();
+      if (is_astray()) {
+        near_.reset();
+        restart();
+        report_.reextracted = true;
+        report_.reason = "the surface left the fluid";
+      } else {
+        fit_to_field();
+      }
     }
     finish();
     // Where states are blended, so are the rates of the field at the end. From here on it is a function of the
@@ -257,6 +264,16 @@ class TrackerImpl {
     velocities_known_ = false;
     report_.max_distance = projection.max_distance = largest_distance(*field_, mesh_.positions);
     return projection;
+  }
+
+  // Whether a vertex has gone far away from all particles, where absurd velocities carried it: what is looked for along
+  // its triangles would fill the memory.
+  bool is_astray() const {
+    Box fluid{particles_.positions.front(), particles_.positions.front()};
+    for (const Vec3& x : particles_.positions) fluid = {fluid.min.cwiseMin(x), fluid.max.cwiseMax(x)};
+    const double farthest = (fluid.max - fluid.min).norm() + 100 * settings_.field.radius;
+    return !std::all_of(mesh_.positions.begin(), mesh_.positions.end(),
+                        [&](const Vec3& x) { return fluid.squared_distance(x) <= farthest * farthest; });
   }
 
   // There was no surface before, or there is no field now.

@@ -123,7 +123,8 @@ void describe_particles(FileInfo& info, const std::string& name, const ParticleT
 }  // namespace
 
 FileInfo describe_file(const std::filesystem::path& file) {
-  require_regular_file(file);
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) require_regular_file(file);
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -9,7 +9,7 @@
 namespace flowskin::sph {
 
 /// All walls of a set-up together: more are a slip of the spacing or of a mesh's unit.
-inline constexpr double kMostWallParticles = 2e7;
+inline constexpr double kMostWallParticles = 1e7;
 
 /// Where walls that rest are sampled: in the domain and so far around it that fluid inside feels no end of them;
 /// everywhere along axes without domain.

@@ -101,7 +101,7 @@ TEST(WallReach, TooManyWallParticlesAreRefusedWithTheNumber) {
   // Walls that move are sampled whole; each by itself would be few enough.
   setup = drop(true);
   for (int k = 0; k < 2; ++k) {
-    setup.boundaries.push_back({sheet(13.8, 0), 0});
+    setup.boundaries.push_back({sheet(11, 0), 0});
     setup.boundaries.back().motion.keyframes = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {0, 0.1, 0}, {0, 0, 0}}};
   }
   EXPECT_THAT(error_of(setup), HasSubstr("boundary 2"));

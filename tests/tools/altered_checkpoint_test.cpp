@@ -77,7 +77,7 @@ TEST_F(AlteredCheckpoints, OfASimulationAreRefusedOrHarmless) {
     "frame_rate": 100, "particles": {"spacing": 0.05}, "simulation": {"max_speed": 2},
     "bodies": [{"shape": "block", "min": [0, 0, 0], "max": [0.1, 0.15, 0.1]}],
     "texture": {"when_stretched": "fade"}, "output": {"checkpoint_interval": 1}})",
-                               204),
+                               516),
             10);
 }
 
@@ -86,7 +86,7 @@ TEST_F(AlteredCheckpoints, OfPrescribedMotionAreRefusedOrHarmless) {
     "frame_rate": 100, "particles": {"spacing": 0.05, "source": "prescribed", "motion": {"type": "vortex"}},
     "bodies": [{"shape": "block", "min": [0, 0, 0], "max": [0.1, 0.15, 0.1]}],
     "output": {"checkpoint_interval": 1}})",
-                               204),
+                               516),
             10);
 }
 
