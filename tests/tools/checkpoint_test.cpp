@@ -120,7 +120,7 @@ TEST_F(Checkpoints, DraftsAreRemovedInASignalHandler) {
 
 TEST_F(Checkpoints, StaleDraftsAreRemoved) {
   std::ofstream(folder_ / ".frame_0001.ply.123-4.part") << "half";
-  std::ofstream(folder_ / "surface.part.mp4") << "half";
+  std::ofstream(folder_ / ".surface.mp4.99-0.part") << "half";
   std::ofstream(folder_ / "mine.part") << "whole";
   scenes::remove_stale_drafts(folder_);
   EXPECT_EQ(count(), 1U);

@@ -37,7 +37,7 @@ class RunFolder {
   std::string why_not_again(const std::string& scene) const;
   [[noreturn]] void refuse(const std::string& why_not) const;
 
-  const RunDirectory& directory_;
+  const RunDirectory directory_;
   std::optional<RunRecord> record_;
   std::vector<std::string> names_;  // that runs write and that are there, relative to the folder, ascending
   std::vector<std::string> in_place_of_folders_;  // names of folders that are something else, and what

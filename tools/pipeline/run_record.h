@@ -75,7 +75,7 @@ class RunRecorder {
   void record(const std::filesystem::path& file, const std::filesystem::path& draft, bool durable);
   void append(const std::string& line);
 
-  const RunDirectory& directory_;
+  const RunDirectory directory_;
   int descriptor_ = -1;
   dev_t device_ = 0;  // of the folder, which may be replaced by another one of its name
   ino_t inode_ = 0;
