@@ -78,7 +78,7 @@ TEST_F(AlteredCheckpoints, OfASimulationAreRefusedOrHarmless) {
     "bodies": [{"shape": "block", "min": [0, 0, 0], "max": [0.1, 0.15, 0.1]}],
     "texture": {"when_stretched": "fade"}, "output": {"checkpoint_interval": 1}})",
                                516),
-            10);
+            4);
 }
 
 TEST_F(AlteredCheckpoints, OfPrescribedMotionAreRefusedOrHarmless) {
@@ -87,7 +87,7 @@ TEST_F(AlteredCheckpoints, OfPrescribedMotionAreRefusedOrHarmless) {
     "bodies": [{"shape": "block", "min": [0, 0, 0], "max": [0.1, 0.15, 0.1]}],
     "output": {"checkpoint_interval": 1}})",
                                516),
-            10);
+            4);
 }
 
 TEST_F(AlteredCheckpoints, ASceneMayHaveNoFramesButTheFirst) {
