@@ -156,7 +156,7 @@ TEST_F(TrackCommand, SaysWhatIsWrong) {
   expect_error({"track", particles + "/frame_0000.ply"}, "only file");
   expect_error({"track", particles + "/*.ply", "--out", (folder_ / "run").string()}, "give another folder");
   expect_error({"track", particles + "/*.ply", "--radius", "-1"}, "--radius");
-  expect_error({"track", particles + "/*.ply", "--radius", "9"}, "tracking.radius");
+  expect_error({"track", particles + "/*.ply", "--radius", "9"}, "--radius and --spacing set it");
   expect_error({"track", (folder_ / "run" / "surface" / "*.ply").string()}, "not particles");
 }
 
