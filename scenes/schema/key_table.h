@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/named_value.h"
 #include "scenes/schema/scene_key.h"
 #include "scenes/schema/values.h"
 
