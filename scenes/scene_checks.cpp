@@ -227,6 +227,13 @@ void load_mesh(const Scene& scene, const MeshPlacement& placement, const std::st
 
 }  // namespace
 
+std::string current_folder() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::current_path(error);
+  if (error) throw InputError("the current folder cannot be found (was it removed?): " + error.message());
+  return folder.string();
+}
+
 std::string absolute_name(const std::string& directory, const std::string& file) {
   if (file.empty()) return file;
   const std::filesystem::path path(file);

@@ -12,6 +12,9 @@ void check_consistency(const Scene& scene, const JsonNode& root, Problems& probl
 /// Reads and places the meshes that the scene names, and checks that its image exists.
 void load_files(Scene& scene, const JsonNode& root, Problems& problems);
 
+/// @throws InputError where it cannot be found
+std::string current_folder();
+
 /// A file name of the scene as an absolute path.
 std::string absolute_name(const std::string& directory, const std::string& file);
 

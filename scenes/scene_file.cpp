@@ -23,10 +23,8 @@ std::string read_text(const std::filesystem::path& file) {
 }
 
 std::string absolute_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  const std::filesystem::path absolute = std::filesystem::absolute(folder.empty() ? "." : folder, error);
-  if (error) throw InputError("the current folder cannot be found (was it removed?): " + error.message());
-  return absolute.lexically_normal().string();
+  const std::filesystem::path from = folder.is_absolute() ? "" : current_folder();
+  return (from / (folder.empty() ? "." : folder)).lexically_normal().string();
 }
 
 /// File names absolute, so that the written scene means the same wherever it stands.

@@ -1,12 +1,12 @@
 #include "tracking/tracker.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "common/bounds.h"
 #include "common/number_text.h"
 #include "common/stopwatch.h"
 #include "tracking/advection/particle_motion.h"
@@ -17,6 +17,7 @@
 #include "tracking/fairing/repair.h"
 #include "tracking/material/material.h"
 #include "tracking/mesh/adjacency.h"
+#include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/remeshing/remesh.h"
 #include "tracking/repair/change_topology.h"
@@ -204,34 +205,17 @@ class TrackerImpl {
     }
   }
 
-  // Whether each edge has one triangle on each side, which passes it the other way.
-  static bool is_closed(const std::vector<Triangle>& triangles) {
-    std::vector<std::array<int, 2>> edges, opposite;
-    for (const Triangle& t : triangles) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int a = t[k], b = t[(k + 1) % 3];
-        if (a == b) return false;
-        edges.push_back({a, b});
-        opposite.push_back({b, a});
-      }
-    }
-    std::sort(edges.begin(), edges.end());
-    std::sort(opposite.begin(), opposite.end());
-    return edges == opposite && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
-  }
-
   static void check_mesh(const SurfaceMesh& mesh) {
     const std::size_t count = mesh.positions.size();
     bool sound = mesh.rest_positions.size() == count && mesh.ids.size() == count &&
                  (mesh.velocities.size() == count || mesh.velocities.empty());
     for (const auto& layer : mesh.layers) sound = sound && layer.size() == count;
-    for (const Triangle& triangle : mesh.triangles)
-      for (const int vertex : triangle) sound = sound && vertex >= 0 && static_cast<std::size_t>(vertex) < count;
     const auto finite = [](const std::vector<Vec3>& vectors) {
       return std::all_of(vectors.begin(), vectors.end(), [](const Vec3& v) { return v.allFinite(); });
     };
     sound = sound && finite(mesh.positions) && finite(mesh.rest_positions) && finite(mesh.velocities) &&
-            std::all_of(mesh.layers.begin(), mesh.layers.end(), finite) && is_closed(mesh.triangles);
+            std::all_of(mesh.layers.begin(), mesh.layers.end(), finite) &&
+            connection_problems(static_cast<int>(count), mesh.triangles).empty();
     if (!sound) throw std::invalid_argument("the state of the tracker has a mesh that contradicts itself");
   }
 
@@ -269,8 +253,7 @@ class TrackerImpl {
   // Whether a vertex has gone far away from all particles, where absurd velocities carried it: what is looked for along
   // its triangles would fill the memory.
   bool is_astray() const {
-    Box fluid{particles_.positions.front(), particles_.positions.front()};
-    for (const Vec3& x : particles_.positions) fluid = {fluid.min.cwiseMin(x), fluid.max.cwiseMax(x)};
+    const Box fluid = bounds(particles_.positions);
     const double farthest = (fluid.max - fluid.min).norm() + 100 * settings_.field.radius;
     return !std::all_of(mesh_.positions.begin(), mesh_.positions.end(),
                         [&](const Vec3& x) { return fluid.squared_distance(x) <= farthest * farthest; });

@@ -7,27 +7,14 @@
 
 #include "end_to_end/small_run.h"
 
-namespace flowskin {
+namespace flowskin::end_to_end {
 namespace {
 
 namespace fs = std::filesystem;
-using end_to_end::bytes;
-using end_to_end::expect_same_results;
-using end_to_end::newest_checkpoint;
-using end_to_end::Result;
-using end_to_end::run_flowskin;
-using end_to_end::run_flowskin_until;
-using end_to_end::SmallScene;
 
-class ClosedStreams : public ::testing::Test {
+class ClosedStreams : public SmallRunTest {
  protected:
-  void SetUp() override {
-    folder_ = end_to_end::fresh_folder("closed_streams");
-    small_.frames = 4;
-    small_.interval = 100;
-    small_.write(scene());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  ClosedStreams() : SmallRunTest("closed_streams", {"--threads", "1"}, {.frames = 4, .interval = 100}) {}
 
   /// A folder with an ffmpeg that is none; the scene has pictures from now on.
   fs::path fake_ffmpeg(const std::string& script) const {
@@ -54,22 +41,13 @@ class ClosedStreams : public ::testing::Test {
                  "$child; sleep 0.1; done; wait $child");
   }
 
-  fs::path scene() const { return folder_ / "small.json"; }
-  std::vector<std::string> arguments(const fs::path& out, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all{"run", scene().string(), "--out", out.string(), "--threads", "1"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
   /// By a shell, which puts the program in the place of $F.
   static Result shell(const std::string& line) {
-    return end_to_end::run_program({"bash", "-c", "F=" FLOWSKIN_BINARY_DIR "/flowskin; " + line});
+    return run_program({"bash", "-c", "F=" FLOWSKIN_BINARY_DIR "/flowskin; " + line});
   }
   std::string run_line(const std::string& name) const {
     return "$F run " + scene().string() + " --threads 1 --out " + (folder_ / name).string();
   }
-
-  SmallScene small_;
-  fs::path folder_;
 };
 
 TEST_F(ClosedStreams, ARunGoesOnWithoutItsTerminal) {
@@ -170,7 +148,7 @@ TEST_F(ClosedStreams, SignalsLeaveNoFfmpegBehind) {
     process.erase(process.find_last_not_of("\n") + 1);
     for (int k = 0; k < 200 && is_alive(process); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_FALSE(is_alive(process)) << signals << ": ffmpeg " << process << " is still there";
-    for (const std::string& name : end_to_end::files_below(folder_ / "run"))
+    for (const std::string& name : files_below(folder_ / "run"))
       EXPECT_EQ(name.find(".part"), std::string::npos) << signals << ": " << name;
   }
 }
@@ -183,4 +161,4 @@ TEST_F(ClosedStreams, AHangupDoesNotEndFfmpeg) {
 }
 
 }  // namespace
-}  // namespace flowskin
+}  // namespace flowskin::end_to_end

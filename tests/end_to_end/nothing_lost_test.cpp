@@ -10,34 +10,15 @@
 #include "end_to_end/small_run.h"
 #include "tools/pipeline/run_directory.h"
 
-namespace flowskin {
+namespace flowskin::end_to_end {
 namespace {
 
 namespace fs = std::filesystem;
-using end_to_end::bytes;
-using end_to_end::expect_same_results;
-using end_to_end::newest_checkpoint;
-using end_to_end::Result;
-using end_to_end::run_flowskin;
-using end_to_end::run_flowskin_until;
-using end_to_end::SmallScene;
 
-class NothingLost : public ::testing::Test {
+class NothingLost : public SmallRunTest {
  protected:
-  void SetUp() override {
-    folder_ = end_to_end::fresh_folder("nothing_lost");
-    small_.frames = 4;
-    small_.interval = 2;
-    small_.write(scene());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  NothingLost() : SmallRunTest("nothing_lost", {"--quiet", "--threads", "1"}, {.frames = 4, .interval = 2}) {}
 
-  fs::path scene() const { return folder_ / "small.json"; }
-  std::vector<std::string> arguments(const fs::path& out, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all{"run", scene().string(), "--out", out.string(), "--quiet", "--threads", "1"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
   Result run(const fs::path& out, const std::vector<std::string>& more = {}) const {
     return run_flowskin(arguments(out, more));
   }
@@ -46,7 +27,7 @@ class NothingLost : public ::testing::Test {
     std::vector<std::string> command{"bash", "-c", "cd \"$0\" && exec \"$@\"", folder_.string(),
                                      FLOWSKIN_BINARY_DIR "/flowskin"};
     command.insert(command.end(), words.begin(), words.end());
-    return end_to_end::run_program(command);
+    return run_program(command);
   }
   static void expect(const Result& result, int status, const std::vector<std::string>& words) {
     EXPECT_EQ(result.status, status) << result.output;
@@ -59,7 +40,7 @@ class NothingLost : public ::testing::Test {
   /// All files with what is in them.
   static std::map<std::string, std::string> contents(const fs::path& below) {
     std::map<std::string, std::string> all;
-    for (const std::string& name : end_to_end::files_below(below)) all[name] = bytes(below / name);
+    for (const std::string& name : files_below(below)) all[name] = bytes(below / name);
     return all;
   }
   /// A run that was killed once it had a checkpoint.
@@ -69,9 +50,6 @@ class NothingLost : public ::testing::Test {
         arguments(out, {"--frames", "60"}), [&] { return newest_checkpoint(out) >= 2; }, SIGKILL);
     return out;
   }
-
-  SmallScene small_;
-  fs::path folder_;
 };
 
 TEST_F(NothingLost, ASceneInTheFolderOfTheRun) {
@@ -267,7 +245,7 @@ TEST_F(NothingLost, EveryFileOfARunIsKnown) {
   std::ofstream(scene()) << drawn;
   ASSERT_EQ(run(out, {"--compare", "hybrid,normal"}).status, 0);
   const std::string record = bytes(out / "flowskin_run.txt");
-  for (const std::string& name : end_to_end::files_below(out)) {
+  for (const std::string& name : files_below(out)) {
     EXPECT_TRUE(tools::RunDirectory::is_name_of_run(name)) << name;
     if (name != "flowskin_run.txt") {
       EXPECT_NE(record.find("file " + name + " "), std::string::npos) << name;
@@ -350,4 +328,4 @@ TEST_F(NothingLost, NoClaimsAboutAFolderThatIsGone) {
 }
 
 }  // namespace
-}  // namespace flowskin
+}  // namespace flowskin::end_to_end

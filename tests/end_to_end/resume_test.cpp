@@ -8,16 +8,10 @@
 
 #include "end_to_end/small_run.h"
 
-namespace flowskin {
+namespace flowskin::end_to_end {
 namespace {
 
 namespace fs = std::filesystem;
-using end_to_end::expect_same_results;
-using end_to_end::newest_checkpoint;
-using end_to_end::Result;
-using end_to_end::run_flowskin;
-using end_to_end::run_flowskin_until;
-using end_to_end::SmallScene;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -25,7 +19,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 class Resume : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = end_to_end::fresh_folder("resume");
+    folder_ = fresh_folder("resume");
     SmallScene().write(scene());
     const double start = now();
     const Result result = run(straight(), {"--threads", "2"});
@@ -103,7 +97,7 @@ TEST_F(Resume, AfterKillAtRandomMoments) {
     ASSERT_EQ(result.status, 128 + SIGKILL) << result.output;
     // Lost are at most the frames since the last save.
     if (fs::exists(out / "frames.csv")) {
-      const int last = int(end_to_end::Table(out / "frames.csv").rows()) - 1;
+      const int last = int(Table(out / "frames.csv").rows()) - 1;
       const int saved_by_then = last / 3 * 3 - (last % 3 == 0 ? 3 : 0);  // 0: the first frame, which needs no save
       EXPECT_GE(std::max(newest_checkpoint(out), 0), saved_by_then) << "after frame " << last;
     }
@@ -132,7 +126,7 @@ TEST_F(Resume, AfterKillInTheMiddleOfWriting) {
     };
     const Result result = run_flowskin_until(arguments(out, more), writing, SIGKILL);
     if (result.status == 0) break;
-    for (const std::string& name : end_to_end::files_below(out)) left_behind += name.ends_with(".part");
+    for (const std::string& name : files_below(out)) left_behind += name.ends_with(".part");
   }
   if (left_behind == 0) std::printf("no kill hit a file while it was written\n");
   const Result last = run(out, {newest_checkpoint(out) < 0 ? "--overwrite" : "--resume"});
@@ -146,7 +140,7 @@ TEST_F(Resume, ASecondSignalStopsAtOnceAndLeavesNoHalfFiles) {
       arguments(out, {}), [&] { return newest_checkpoint(out) >= 3; }, SIGTERM, 2);
   // Either the second one came in time, or the first had already ended the run.
   EXPECT_EQ(result.status, 128 + SIGTERM) << result.output;
-  for (const std::string& name : end_to_end::files_below(out)) EXPECT_FALSE(name.ends_with(".part")) << name;
+  for (const std::string& name : files_below(out)) EXPECT_FALSE(name.ends_with(".part")) << name;
   ASSERT_EQ(run(out, {"--resume"}).status, 0);
   expect_same_results(straight(), out);
 }
@@ -159,9 +153,9 @@ TEST_F(Resume, WhereThereIsNothingToResume) {
 }
 
 TEST_F(Resume, WhereAllIsDone) {
-  const auto before = end_to_end::files_below(straight());
+  const auto before = files_below(straight());
   expect(run(straight(), {"--resume"}), 0, {"complete", "12 frames"});
-  EXPECT_EQ(end_to_end::files_below(straight()), before);
+  EXPECT_EQ(files_below(straight()), before);
 }
 
 TEST_F(Resume, GoesOnBeyondTheEnd) {
@@ -177,7 +171,7 @@ TEST_F(Resume, GoesOnBeyondTheEnd) {
 
 TEST_F(Resume, AnotherSceneIsRefused) {
   const fs::path out = stopped_run("other_scene");
-  const std::string text = end_to_end::bytes(scene());
+  const std::string text = bytes(scene());
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string changed = text;
     changed.replace(changed.find(from), from.size(), to);
@@ -190,7 +184,7 @@ TEST_F(Resume, AnotherSceneIsRefused) {
   expect(with("0.09, \"speed\": 2", "0.09, \"speed\": 3"), 2, {"emitters[0].speed"});
   expect(run(out, {"--resume", "--velocity", "affine"}), 2, {"tracking.velocity"});
   expect(run(out, {"--resume", "--compare", "affine"}), 2, {"no --compare"});
-  const std::string box = end_to_end::bytes(folder_ / "box.obj");
+  const std::string box = bytes(folder_ / "box.obj");
   std::ofstream(folder_ / "box.obj") << box << "f 5 6 7 8\n";
   expect(run(out, {"--resume"}), 2, {"boundaries[0].file", "what is in the file"});
   std::ofstream(folder_ / "box.obj") << box;
@@ -203,7 +197,7 @@ TEST_F(Resume, DamagedCheckpointsAreRefused) {
   const fs::path out = stopped_run("damaged");
   const fs::path file = out / "checkpoint" / "frame_0006.bin";
   ASSERT_TRUE(fs::exists(file));
-  const std::string sound = end_to_end::bytes(file);
+  const std::string sound = bytes(file);
   const auto refused = [&](const std::string& content, const std::vector<std::string>& words) {
     std::ofstream(file, std::ios::binary) << content;
     const Result result = run(out, {"--resume"});
@@ -233,11 +227,10 @@ TEST_F(Resume, DamagedCheckpointsAreRefused) {
 }
 
 TEST_F(Resume, AtMostTwoCheckpointsAreKeptAndOneAtTheEnd) {
-  EXPECT_EQ(end_to_end::files_below(straight() / "checkpoint"),
-            (std::vector<std::string>{"complete.txt", "frame_0012.bin"}));
+  EXPECT_EQ(files_below(straight() / "checkpoint"), (std::vector<std::string>{"complete.txt", "frame_0012.bin"}));
   const fs::path out = stopped_run("kept");
   std::size_t kept = 0;
-  for (const std::string& name : end_to_end::files_below(out / "checkpoint")) kept += name.ends_with(".bin");
+  for (const std::string& name : files_below(out / "checkpoint")) kept += name.ends_with(".bin");
   EXPECT_EQ(kept, 2U);
 }
 
@@ -258,13 +251,13 @@ TEST_F(Resume, OneRunAtATimeInAFolder) {
 TEST_F(Resume, ComputingTimeAddsUp) {
   const fs::path out = stopped_run("times");
   ASSERT_EQ(run(out, {"--resume"}).status, 0);
-  const std::string log = end_to_end::bytes(out / "log.txt");
+  const std::string log = bytes(out / "log.txt");
   const auto seconds = [&](const std::string& stage) {
     const std::size_t place = log.rfind("  " + stage);
     EXPECT_NE(place, std::string::npos) << stage;
     return place == std::string::npos ? 0 : std::stod(log.substr(place + 2 + 20));
   };
-  const end_to_end::Table table(out / "frames.csv");
+  const Table table(out / "frames.csv");
   for (const char* stage : {"source", "tracking"}) {
     double sum = 0;
     for (std::size_t row = 0; row < table.rows(); ++row) sum += table.number(std::string("seconds_") + stage, row);
@@ -283,7 +276,7 @@ TEST_F(Resume, ComparisonsAndPicturesAreResumedToo) {
   small.frames = 4;
   small.interval = 2;
   small.write(file);
-  std::string text = end_to_end::bytes(file);
+  std::string text = bytes(file);
   text.replace(text.find("\"enabled\": false"), 16, "\"width\": 64, \"height\": 48, \"samples\": 1");
   std::ofstream(file) << text;
   const auto compare = [&](const fs::path& out) {
@@ -326,4 +319,4 @@ TEST_F(Resume, TrackingOfRecordedParticlesIsResumedToo) {
 }
 
 }  // namespace
-}  // namespace flowskin
+}  // namespace flowskin::end_to_end

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "end_to_end/program.h"
@@ -16,8 +17,8 @@ namespace flowskin::end_to_end {
 struct SmallScene {
   int frames = 12;
   int interval = 3;
-  std::string simulation;  ///< More keys of this section, each with a comma behind it.
-  std::string more;        ///< More keys of the scene, each with a comma before it.
+  std::string simulation{};  ///< More keys of this section, each with a comma behind it.
+  std::string more{};        ///< More keys of the scene, each with a comma before it.
 
   void write(const std::filesystem::path& file) const {
     std::ofstream(file.parent_path() / "box.obj")
@@ -74,5 +75,34 @@ inline int newest_checkpoint(const std::filesystem::path& run) {
     if (name.rfind("frame_", 0) == 0) newest = std::max(newest, std::stoi(name.substr(6)));
   return newest;
 }
+
+/// Tests that run the small scene in a folder of their own.
+class SmallRunTest : public ::testing::Test {
+ protected:
+  /// @param always options of every run
+  SmallRunTest(std::string name, std::vector<std::string> always, SmallScene small = {})
+      : small_(std::move(small)), name_(std::move(name)), always_(std::move(always)) {}
+  void SetUp() override {
+    folder_ = fresh_folder(name_);
+    small_.write(scene());
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path scene() const { return folder_ / "small.json"; }
+  std::vector<std::string> arguments(const std::filesystem::path& out,
+                                     const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> all{"run", scene().string(), "--out", out.string()};
+    all.insert(all.end(), always_.begin(), always_.end());
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  SmallScene small_;
+  std::filesystem::path folder_;
+
+ private:
+  std::string name_;
+  std::vector<std::string> always_;
+};
 
 }  // namespace flowskin::end_to_end

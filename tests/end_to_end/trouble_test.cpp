@@ -6,31 +6,15 @@
 
 #include "end_to_end/small_run.h"
 
-namespace flowskin {
+namespace flowskin::end_to_end {
 namespace {
 
 namespace fs = std::filesystem;
-using end_to_end::expect_same_results;
-using end_to_end::newest_checkpoint;
-using end_to_end::Result;
-using end_to_end::run_flowskin;
-using end_to_end::run_flowskin_until;
-using end_to_end::SmallScene;
 
-class Trouble : public ::testing::Test {
+class Trouble : public SmallRunTest {
  protected:
-  void SetUp() override {
-    folder_ = end_to_end::fresh_folder("trouble");
-    small_.write(scene());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  Trouble() : SmallRunTest("trouble", {"--quiet"}) {}
 
-  fs::path scene() const { return folder_ / "small.json"; }
-  std::vector<std::string> arguments(const fs::path& out, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all{"run", scene().string(), "--out", out.string(), "--quiet"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
   static void expect(const Result& result, int status, const std::vector<std::string>& words) {
     EXPECT_EQ(result.status, status) << result.output;
     for (const std::string& word : words) EXPECT_NE(result.output.find(word), std::string::npos) << result.output;
@@ -39,18 +23,15 @@ class Trouble : public ::testing::Test {
   /// Every file that is there can be read, and nothing is half written.
   static void expect_sound(const fs::path& run) {
     std::vector<std::string> surfaces{"info"};
-    for (const std::string& name : end_to_end::files_below(run)) {
+    for (const std::string& name : files_below(run)) {
       EXPECT_FALSE(name.ends_with(".part")) << name;
       if (name.ends_with(".ply") || name.ends_with(".obj")) surfaces.push_back((run / name).string());
     }
     ASSERT_GT(surfaces.size(), 1U);
     EXPECT_EQ(run_flowskin(surfaces).status, 0);
-    const end_to_end::Table table(run / "frames.csv");
+    const Table table(run / "frames.csv");
     EXPECT_GT(table.rows(), 0U);
   }
-
-  SmallScene small_;
-  fs::path folder_;
 };
 
 TEST_F(Trouble, FullDisk) {
@@ -76,11 +57,10 @@ TEST_F(Trouble, FullDisk) {
 TEST_F(Trouble, FilesMayNotGrow) {
   // 40 kB: the first surfaces fit, later ones do not. The signal for it must not kill.
   const fs::path out = folder_ / "run";
-  const Result result =
-      end_to_end::run_program({"bash", "-c", "ulimit -f 80; exec \"$@\"", "bash", FLOWSKIN_BINARY_DIR "/flowskin",
-                               "run", scene().string(), "--out", out.string(), "--quiet"});
+  const Result result = run_program({"bash", "-c", "ulimit -f 80; exec \"$@\"", "bash", FLOWSKIN_BINARY_DIR "/flowskin",
+                                     "run", scene().string(), "--out", out.string(), "--quiet"});
   expect(result, 1, {"File too large", "cannot write", "ulimit -f"});
-  for (const std::string& name : end_to_end::files_below(out)) EXPECT_FALSE(name.ends_with(".part")) << name;
+  for (const std::string& name : files_below(out)) EXPECT_FALSE(name.ends_with(".part")) << name;
 }
 
 TEST_F(Trouble, TheFolderIsRemovedDuringTheRun) {
@@ -121,7 +101,7 @@ TEST_F(Trouble, ABlowUpCanBeResumedWithTheSettingThatItNames) {
   EXPECT_EQ(again.status, 0) << again.output;
   EXPECT_NE(again.output.find("simulation.speed_of_sound: 2.6, now 40"), std::string::npos) << again.output;
   expect_sound(out);
-  EXPECT_EQ(end_to_end::Table(out / "frames.csv").rows(), 13U);
+  EXPECT_EQ(Table(out / "frames.csv").rows(), 13U);
 }
 
 TEST_F(Trouble, NoCheckpointsWhereNoneAreWanted) {
@@ -136,4 +116,4 @@ TEST_F(Trouble, NoCheckpointsWhereNoneAreWanted) {
 }
 
 }  // namespace
-}  // namespace flowskin
+}  // namespace flowskin::end_to_end

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/bounds.h"
 #include "common/errors.h"
 #include "common/thread_count.h"
 #include "scenes/io/frame_files.h"

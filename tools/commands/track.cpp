@@ -5,7 +5,9 @@
 #include <cmath>
 #include <memory>
 
+#include "common/bounds.h"
 #include "common/errors.h"
+#include "scenes/scene_checks.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/particle_sequence.h"
 #include "scenes/sources/particle_spacing.h"
@@ -136,13 +138,6 @@ scenes::RecordedSpec recorded_spec(const TrackOptions& options) {
   return spec;
 }
 
-std::string current_folder() {
-  std::error_code error;
-  const fs::path folder = fs::current_path(error);
-  if (error) throw InputError("the current folder cannot be found (was it removed?): " + error.message());
-  return folder.string();
-}
-
 /// What follows from the files or from options, but stands in the scene as something else, which the user never set.
 void require_range(double value, double least, double most, const std::string& what, const char* remedy) {
   if (value >= least && value <= most) return;
@@ -161,7 +156,7 @@ void check_ranges(const scenes::Scene& scene) {
 
 scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) {
   scenes::Scene scene;
-  scene.directory = current_folder();
+  scene.directory = scenes::current_folder();
   scene.name = default_name(sequence.files.front());
   scene.description = "A surface tracked on recorded particles by `flowskin track`.";
   scene.particles.source = scenes::ParticlesSpec::Source::recorded;
@@ -184,7 +179,7 @@ scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) 
 }
 
 int track(const TrackOptions& options) {
-  ParticleSequence sequence = scenes::open_sequence(recorded_spec(options), current_folder());
+  ParticleSequence sequence = scenes::open_sequence(recorded_spec(options), scenes::current_folder());
   for (const std::string& warning : sequence.warnings) warn(warning);
   tell(options, fmt::format("{} files from {}, one every {:.6g} s", sequence.files.size(),
                             sequence.files.front().string(), sequence.interval));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/bounds.h"
 #include "tools/pipeline/picture_maker.h"
 #include "tools/render/camera.h"
 #include "tools/render/color.h"

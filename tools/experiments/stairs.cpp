@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "common/bounds.h"
 #include "common/errors.h"
 #include "scenes/sources/make_source.h"
 #include "tools/experiments/error_measures.h"

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/bounds.h"
 #include "common/errors.h"
 #include "scenes/io/atomic_file.h"
 #include "scenes/scene_file.h"
@@ -47,7 +48,6 @@ FrameLoop::FrameLoop(const RunOptions& options, RunStart start, const RunDirecto
   log_.detail("machine: " + machine_text());
   if (scene_.tracking.enabled) clock_.stages.time("tracking", [&] { track_first_state(); });
   if (const auto methods = methods_to_compare(options_.compare); !methods.empty()) {
-    if (!surface_) throw InputError("--compare needs a tracked surface, but tracking.enabled is false");
     comparison_ = std::make_unique<Comparison>(scene_, directory_, methods, surface_->tracker(),
                                                to_particles(source_->state()), clock_.stages);
     if (scene_.render.enabled) comparison_->make_pictures(start.texture, bounds(source_->state().positions));

@@ -25,16 +25,6 @@ void PictureMaker::draw(int frame, const ParticleFrame& particles) const {
   write_png(directory_.particle_image(frame), renderer_.draw(particles));
 }
 
-sph::Box bounds(const std::vector<Vec3>& points) {
-  if (points.empty()) return {};
-  sph::Box box{points.front(), points.front()};
-  for (const Vec3& point : points) {
-    box.min = box.min.cwiseMin(point);
-    box.max = box.max.cwiseMax(point);
-  }
-  return box;
-}
-
 void make_contact_sheet(const RunDirectory& directory, double frame_rate) {
   const auto surface_frames = RunDirectory::frames_in(directory.image_folder(), "frame_", ".png");
   const auto particle_frames = RunDirectory::frames_in(directory.image_folder(), "particles_", ".png");

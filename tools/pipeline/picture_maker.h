@@ -27,8 +27,6 @@ class PictureMaker {
   Renderer renderer_;
 };
 
-/// Box of points (m); an empty one where there are none.
-sph::Box bounds(const std::vector<Vec3>& points);
 
 /// contact_sheet.png: the surface above the particles at six times, from the pictures in images/.
 void make_contact_sheet(const RunDirectory& directory, double frame_rate);

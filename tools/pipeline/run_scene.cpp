@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-
 #include <memory>
 #include <string>
 #include <utility>
@@ -24,12 +23,19 @@ namespace flowskin::tools {
 
 namespace {
 
+void check_can_compare(const scenes::Scene& scene, const RunOptions& options) {
+  if (!methods_to_compare(options.compare).empty() && !scene.tracking.enabled)
+    throw InputError(fmt::format("--compare needs a tracked surface, but {} has tracking.enabled false",
+                                 options.scene_file.string()));
+}
+
 void resume_scene(scenes::Scene scene, RunOptions& options, const RunDirectory& directory) {
   std::unique_ptr<Checkpoint> checkpoint = open_checkpoint(directory);
   const RunFolder folder(directory);
   folder.check_inputs_stay(files_needed(scene, options.scene_file));
   folder.check_may_go_on();
   if (options.compare.empty()) options.compare = checkpoint->header().compare;
+  check_can_compare(scene, options);
   RunStart start = start_run(std::move(scene), options);
   const CheckpointHeader now = checkpoint_header(start, options.compare);
   const std::vector<std::string> changed = check_resumable(*checkpoint, now, start.scene.frames);
@@ -75,9 +81,7 @@ void run_scene(const RunOptions& options) {
 void run_scene(scenes::Scene scene, const RunOptions& given) {
   RunOptions options = given;
   use_threads(options.threads);
-  if (!methods_to_compare(options.compare).empty() && !scene.tracking.enabled)
-    throw InputError(fmt::format("--compare needs a tracked surface, but {} has tracking.enabled false",
-                                 options.scene_file.string()));
+  check_can_compare(scene, options);
   catch_hangups(options.stop_on_hangup);
   const RunDirectory directory(options.out);
   // Nothing is looked at, written or removed there without the lock.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/bounds.h"
 #include "common/errors.h"
 #include "tools/render/camera.h"
 #include "tools/render/film.h"
@@ -92,14 +93,11 @@ std::vector<Vec3> points_to_see(const std::vector<scenes::BoundarySpec>& boundar
 }
 
 sph::Box bounding_box(const std::vector<Vec3>& points) {
-  sph::Box box{points.front(), points.front()};
   for (const Vec3& point : points) {
     if (!point.allFinite())
       throw InputError("the walls or the fluid of the scene to draw have a place that is not finite");
-    box.min = box.min.cwiseMin(point);
-    box.max = box.max.cwiseMax(point);
   }
-  return box;
+  return bounds(points);
 }
 
 }  // namespace

@@ -190,6 +190,12 @@ void check_ids(const SurfaceMesh& mesh, std::vector<std::string>& problems) {
 
 }  // namespace
 
+std::vector<std::string> connection_problems(int vertex_count, const std::vector<Triangle>& triangles) {
+  std::vector<std::string> problems;
+  if (check_indices(vertex_count, triangles, problems)) check_edges(triangles, problems);
+  return problems;
+}
+
 std::vector<std::string> mesh_problems(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
   std::vector<std::string> problems;
   const int vertex_count = static_cast<int>(positions.size());

@@ -8,6 +8,10 @@
 
 namespace flowskin::tracking {
 
+/// Of that below, what the triangles alone tell: indices in range, no triangle with a repeated vertex, every edge in
+/// exactly two triangles that pass it in opposite directions.
+std::vector<std::string> connection_problems(int vertex_count, const std::vector<Triangle>& triangles);
+
 /// What is wrong with a surface, one sentence a kind of fault, each with a count and the first place; empty: it is
 /// sound. Sound means: indices in range, positions finite, no unreferenced vertex, no two vertices at the same place,
 /// no triangle with a repeated vertex, every edge in exactly two triangles that pass it in opposite directions (closed,
