@@ -27,7 +27,6 @@ class PictureMaker {
   Renderer renderer_;
 };
 
-
 /// contact_sheet.png: the surface above the particles at six times, from the pictures in images/.
 void make_contact_sheet(const RunDirectory& directory, double frame_rate);
 
