@@ -5,7 +5,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <barrier>
 #include <fstream>
+#include <memory>
+#include <thread>
 
 #include "common/errors.h"
 #include "scenes/io/atomic_file.h"
@@ -190,6 +194,33 @@ TEST_F(RunRecords, ALockIsForOneAndLeavesNoEmptyFolders) {
     put("a/b/mine.txt", "mine");
   }
   EXPECT_TRUE(fs::exists(folder_ / "a/b/mine.txt"));
+}
+
+TEST_F(RunRecords, WhoeverLosesTheLockLeavesTheFolderToTheWinner) {
+  const RunDirectory directory(folder_ / "a/b");
+  for (int round = 0; round < 1000; ++round) {
+    std::barrier both(2);
+    std::atomic<int> winners = 0;
+    const auto contend = [&] {
+      both.arrive_and_wait();
+      auto lock = std::make_unique<RunLock>();
+      bool won = true;
+      try {
+        lock->create(directory);
+      } catch (const InputError&) {
+        won = false;
+        lock.reset();
+      }
+      both.arrive_and_wait();
+      EXPECT_TRUE(!won || fs::exists(directory.root())) << round;
+      winners += won;
+    };
+    std::thread other(contend);
+    contend();
+    other.join();
+    EXPECT_EQ(winners, 1);
+    fs::remove_all(folder_ / "a");
+  }
 }
 
 }  // namespace

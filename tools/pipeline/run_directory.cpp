@@ -111,9 +111,10 @@ void RunDirectory::make_folders() const {
 }
 
 RunLock::~RunLock() {
+  if (descriptor_ < 0) return;  // whoever has the lock may be about to write into the folders made here
   std::error_code ignored;
   for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, ignored);
-  if (descriptor_ >= 0) ::close(descriptor_);
+  ::close(descriptor_);
 }
 
 void RunLock::create(const RunDirectory& directory) {
@@ -121,14 +122,20 @@ void RunLock::create(const RunDirectory& directory) {
   std::error_code ignored;
   if (fs::exists(root, ignored) && !fs::is_directory(root, ignored))
     throw InputError(fmt::format("{} is a file; --out needs a folder", root.string()));
+  constexpr int kAttempts = 100;
+  int attempts = 0;
   try {
     do {
       std::vector<fs::path> missing;
       for (fs::path folder = root; !folder.empty() && !fs::exists(folder); folder = folder.parent_path())
         missing.insert(missing.begin(), folder);
-      for (const fs::path& folder : missing)
-        if (fs::create_directory(folder)) made_.push_back(folder);
-      // Another process may remove the folder that it has made, between here and there.
+      for (const fs::path& folder : missing) {
+        std::error_code error;
+        if (fs::create_directory(folder, error)) made_.push_back(folder);
+        if (error && (error != std::errc::no_such_file_or_directory || ++attempts == kAttempts))
+          throw fs::filesystem_error("cannot make the folder", folder, error);
+      }
+      // Another process may remove the folders that it has made, between here and there.
     } while (!take(directory));
   } catch (const fs::filesystem_error& error) {
     throw RunError(fmt::format("cannot prepare the folder {}: {}", root.string(), error.code().message()));

@@ -66,7 +66,7 @@ class RunDirectory {
 class RunLock {
  public:
   RunLock() = default;
-  /// Folders that were made for the lock and are still empty go again.
+  /// Folders that were made for a lock that was won, and are still empty, go again.
   ~RunLock();
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
