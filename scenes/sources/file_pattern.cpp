@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
-#include <regex>
+#include <string_view>
 
 #include "common/errors.h"
 #include "scenes/io/particle_file.h"
@@ -24,27 +24,62 @@ constexpr std::size_t longest_name = 255;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The pattern as a regular expression.
-std::regex pattern_expression(const std::string& pattern) {
-  static const std::regex printf_number("%[0-9]*d");
-  std::string expression;
-  for (std::size_t i = 0; i < pattern.size(); ++i) {
-    const char c = pattern[i];
-    std::smatch match;
-    const std::string rest = pattern.substr(i);
-    if (c == '*') {
-      expression += ".*";
-    } else if (c == '?') {
-      expression += ".";
-    } else if (std::regex_search(rest, match, printf_number, std::regex_constants::match_continuous)) {
-      expression += "[0-9]+";
-      i += static_cast<std::size_t>(match.length()) - 1;
+/// One step of a pattern: what one letter, or a run of them, must be.
+struct PatternPart {
+  enum class Kind { letter, any_letter, any_letters, digits };
+  Kind kind;
+  char letter = 0;
+};
+
+/// How many letters %d, %4d or %04d takes at this place of a pattern; 0: it is something else.
+std::size_t length_of_number(std::string_view pattern) {
+  if (!pattern.starts_with('%')) return 0;
+  const std::size_t end = std::min(pattern.find_first_not_of("0123456789", 1), pattern.size());
+  return end < pattern.size() && pattern[end] == 'd' ? end + 1 : 0;
+}
+
+std::vector<PatternPart> parts_of(std::string_view pattern) {
+  using Kind = PatternPart::Kind;
+  std::vector<PatternPart> parts;
+  while (!pattern.empty()) {
+    const std::size_t number = length_of_number(pattern);
+    const char c = pattern.front();
+    if (number > 0) {
+      parts.push_back({Kind::digits});
     } else {
-      if (std::string("^$\\.+()[]{}|").find(c) != std::string::npos) expression += '\\';
-      expression += c;
+      parts.push_back({c == '*' ? Kind::any_letters : c == '?' ? Kind::any_letter : Kind::letter, c});
     }
+    pattern.remove_prefix(std::max<std::size_t>(number, 1));
   }
-  return std::regex(expression);
+  return parts;
+}
+
+/// Whether the whole name fits. At each letter it is known which parts may come next, so the time is never more than
+/// that of the letters times the parts.
+bool fits(std::string_view name, const std::vector<PatternPart>& parts) {
+  using Kind = PatternPart::Kind;
+  // next[k]: the letters so far may end before part k.
+  std::vector<char> next(parts.size() + 1, 0), now(next);
+  const auto skip_empty = [&](std::vector<char>& places) {
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      if (places[k] && parts[k].kind == Kind::any_letters) places[k + 1] = 1;
+  };
+  next[0] = 1;
+  skip_empty(next);
+  for (const char c : name) {
+    now.swap(next);
+    std::fill(next.begin(), next.end(), char{0});
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      if (!now[k]) continue;
+      const Kind kind = parts[k].kind;
+      if (kind == Kind::any_letters) next[k] = 1;
+      if (kind == Kind::any_letter || (kind == Kind::letter && parts[k].letter == c)) next[k + 1] = 1;
+      // A run of digits may end here or go on.
+      if (kind == Kind::digits && is_digit(c)) next[k] = next[k + 1] = 1;
+    }
+    skip_empty(next);
+  }
+  return next.back() != 0;
 }
 
 /// A name as text and runs of digits in turn, text first; runs without leading zeros.
@@ -140,10 +175,10 @@ Paths matching_files(const std::filesystem::path& pattern) {
   if (!names) throw InputError(fmt::format("{}: cannot look into the folder {}", pattern.string(), folder.string()));
   if (pattern.filename().string().size() > longest_name)
     throw InputError(fmt::format("{}...: no file has so long a name", pattern.string().substr(0, longest_name)));
-  const std::regex expression = pattern_expression(pattern.filename().string());
+  const std::vector<PatternPart> parts = parts_of(pattern.filename().string());
   Paths paths;
   for (const std::string& name : *names)
-    if (std::regex_match(name, expression)) paths.push_back(folder / name);
+    if (fits(name, parts)) paths.push_back(folder / name);
   if (paths.empty()) {
     throw InputError(
         fmt::format("{}: no file matches{}", pattern.string(), did_you_mean(pattern.filename().string(), *names)));

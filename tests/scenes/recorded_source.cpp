@@ -214,6 +214,34 @@ TEST_F(RecordedSourceTest, FilesAreOrderedByNumberOrNaturally) {
   EXPECT_EQ(files_of_patterns({(folder_ / "a+(b)[%d].x").string()}).paths.size(), 1u);
 }
 
+TEST_F(RecordedSourceTest, PatternsOfNames) {
+  const std::string long_name = std::string(200, 'a') + ".csv";
+  for (const char* name : {"p.csv", "p_1.csv", "p_12.csv", "p_x.csv", "p%d", long_name.c_str()})
+    std::ofstream(folder_ / name) << " ";
+  const auto count = [&](const std::string& pattern) {
+    try {
+      return files_of_patterns({(folder_ / pattern).string()}).paths.size();
+    } catch (const InputError&) {
+      return std::size_t{0};
+    }
+  };
+  EXPECT_EQ(count("p_%d.csv"), 2u);
+  EXPECT_EQ(count("p_%04d.csv"), 2u);
+  EXPECT_EQ(count("p_%d2.csv"), 1u);  // the number is 1
+  EXPECT_EQ(count("p_?.csv"), 2u);
+  EXPECT_EQ(count("p_*.csv"), 3u);
+  EXPECT_EQ(count("p*.csv"), 4u);
+  EXPECT_EQ(count("**p**.c*"), 4u);
+  EXPECT_EQ(count("p_%4.csv"), 0u);
+  EXPECT_EQ(count("?"), 0u);
+  EXPECT_EQ(count("*.csv*"), 5u);
+  // Where each * could take any letters, the ways to share them out are never counted through.
+  std::string stars;
+  for (int k = 0; k < 100; ++k) stars += "*a";
+  EXPECT_EQ(count(stars + "b"), 0u);
+  EXPECT_EQ(count(stars + "*"), 1u);
+}
+
 TEST_F(RecordedSourceTest, GapsInTheNumbersAreMissingFiles) {
   for (const int k : {0, 10, 20, 50})
     write(fmt::format("g_{}.ply", k), cubic_particles({1, 2}, k / 50.0), with_ids | with_velocities);
