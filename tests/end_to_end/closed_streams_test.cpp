@@ -141,13 +141,15 @@ bool is_alive(const std::string& process) {
 
 TEST_F(ClosedStreams, SignalsLeaveNoFfmpegBehind) {
   const fs::path bin = fake_ffmpeg("exec sleep 100");
-  for (const char* signals : {"TERM", "INT", "TERM TERM", "INT TERM", "TERM INT"}) {
+  for (const char* signals : {"TERM", "INT", "TERM TERM", "INT TERM", "TERM INT", "KILL"}) {
     const Result result = run_during_ffmpeg(bin, signals, "");
-    EXPECT_TRUE(result.status == 143 || result.status == 130) << signals << ": " << result.output;
+    const bool killed = result.status == 137;
+    EXPECT_TRUE(result.status == 143 || result.status == 130 || killed) << signals << ": " << result.output;
     std::string process = bytes(said());
     process.erase(process.find_last_not_of("\n") + 1);
     for (int k = 0; k < 200 && is_alive(process); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_FALSE(is_alive(process)) << signals << ": ffmpeg " << process << " is still there";
+    if (killed) continue;  // what it was writing is removed by the next run
     for (const std::string& name : files_below(folder_ / "run"))
       EXPECT_EQ(name.find(".part"), std::string::npos) << signals << ": " << name;
   }

@@ -2,7 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/types.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -31,31 +31,43 @@ std::string read_all(int descriptor) {
   }
 }
 
-/// Starts it with its standard error into this descriptor; signals come once kill_child() knows of it. It has a process
-/// group of its own: what a terminal sends when it is closed does not reach it.
+/// What the new process does between fork and exec, where only system calls are allowed. It has a process group of its
+/// own: what a terminal sends when it is closed does not reach it. It ends with this program, however that ends.
+/// @param failure gets the error number where the program cannot be run
+[[noreturn]] void become(char* const* argv, int errors, int failure, pid_t parent, const sigset_t& signals) {
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);  // it ended before the line above
+  const int nothing = ::open("/dev/null", O_RDWR);
+  ::dup2(nothing, STDIN_FILENO);
+  ::dup2(nothing, STDOUT_FILENO);
+  ::dup2(errors, STDERR_FILENO);
+  std::signal(SIGPIPE, SIG_DFL);
+  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
+  ::execvp(argv[0], argv);
+  const int error = errno;
+  [[maybe_unused]] const ssize_t told = ::write(failure, &error, sizeof error);
+  ::_exit(127);
+}
+
+/// Starts it with its standard error into this descriptor; signals come once kill_child() knows of it.
 /// @return the error number; 0: it runs
-int spawn(std::vector<char*>& argv, int errors) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, errors, STDERR_FILENO);
-  sigset_t all, before, pipe;
+int start(const std::vector<char*>& argv, int errors) {
+  int failure[2];
+  if (::pipe2(failure, O_CLOEXEC) != 0) return errno;
+  sigset_t all, before;
   sigfillset(&all);
-  sigemptyset(&pipe);
-  sigaddset(&pipe, SIGPIPE);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setsigmask(&attributes, &before);
-  posix_spawnattr_setsigdefault(&attributes, &pipe);
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, argv[0], &actions, &attributes, argv.data(), environ);
-  if (error == 0) running_child = child;
+  const pid_t parent = ::getpid(), child = ::fork();
+  if (child == 0) become(argv.data(), errors, failure[1], parent, before);
+  int error = child < 0 ? errno : 0;
+  if (child > 0) running_child = child;
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
+  ::close(failure[1]);
+  // exec closes the other end.
+  const std::string told = read_all(failure[0]);
+  ::close(failure[0]);
+  if (told.size() == sizeof error) std::memcpy(&error, told.data(), sizeof error);
   return error;
 }
 
@@ -83,15 +95,12 @@ ChildOutcome run_child(const std::vector<std::string>& arguments) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0)
     throw RunError(fmt::format("no pipe to {}: {}", arguments[0], std::strerror(errno)));
-  const int error = spawn(argv, ends[1]);
+  const int error = start(argv, ends[1]);
   ::close(ends[1]);
   ChildOutcome outcome;
-  if (error != 0) {
-    outcome.errors = std::strerror(error);
-  } else {
-    outcome.errors = read_all(ends[0]);
-    outcome.status = wait_for_child();
-  }
+  if (error == 0) outcome.errors = read_all(ends[0]);
+  if (running_child > 0) outcome.status = wait_for_child();
+  if (error != 0) outcome = {-1, std::strerror(error)};
   ::close(ends[0]);
   return outcome;
 }

@@ -12,7 +12,8 @@ struct ChildOutcome {
   std::string errors;  ///< Its standard error.
 };
 
-/// Runs a program found on the path, without a shell: arguments may contain anything. @throws RunError
+/// Runs a program found on the path, without a shell: arguments may contain anything. It is killed where this program
+/// ends first, however that ends. @throws RunError
 ChildOutcome run_child(const std::vector<std::string>& arguments);
 
 /// Kills the one that is running. Safe in a signal handler.
