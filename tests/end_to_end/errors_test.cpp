@@ -75,6 +75,10 @@ TEST_F(ProgramErrors, OutIsAFile) {
   const std::string file = write("file", "x");
   expect(run_flowskin({"run", end_to_end::scene("stairs_preview.json"), "--out", file}), 2, {file});
   EXPECT_EQ(end_to_end::bytes(file), "x");
+  for (const std::string& name : {std::string(300, 'a'), "a/" + std::string(300, 'b') + "/c"})
+    expect(run_flowskin({"run", end_to_end::scene("stairs_preview.json"), "--out", (folder_ / name).string()}), 2,
+           {"so long a name"});
+  EXPECT_FALSE(fs::exists(folder_ / "a"));
 }
 
 TEST_F(ProgramErrors, RenderWithoutARun) {

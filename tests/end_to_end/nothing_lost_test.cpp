@@ -281,6 +281,20 @@ TEST_F(NothingLost, OfTwoRunsIntoOneNewFolderOneWins) {
   }
 }
 
+TEST_F(NothingLost, NobodyDrawsPicturesOfARunThatIsGoingOn) {
+  const fs::path out = folder_ / "run";
+  ASSERT_EQ(run(out, {"--frames", "1"}).status, 0);
+  const auto before = contents(out);
+  const std::vector<std::string> words{"render", out.string(), "--no-video", "--width", "32", "--height", "32"};
+  {
+    tools::RunLock other;
+    other.create(tools::RunDirectory(out));
+    expect(run_flowskin(words), 2, {"another flowskin", out.string()});
+  }
+  EXPECT_EQ(contents(out), before);
+  EXPECT_EQ(run_flowskin(words).status, 0);
+}
+
 TEST_F(NothingLost, ASetUpThatFailsLeavesNoFolder) {
   put(folder_ / "wrong.json",
       "{\"frames\": 1, \"particles\": {\"spacing\": 0.1, \"source\": \"recorded\", "

@@ -114,6 +114,8 @@ int render(const RenderOptions& options) {
   use_threads(options.threads);
   const RunDirectory directory(options.directory);
   directory.check_is_run();
+  RunLock lock;
+  lock.take(directory);
   scenes::Scene scene = scenes::read_scene(directory.scene());
   override_settings(options, scene.render);
   catch_interruptions();

@@ -123,6 +123,7 @@ void RunLock::create(const RunDirectory& directory) {
   if (fs::exists(root, ignored) && !fs::is_directory(root, ignored))
     throw InputError(fmt::format("{} is a file; --out needs a folder", root.string()));
   constexpr int kAttempts = 100;
+  constexpr std::size_t kShownOfLongNames = 255;
   int attempts = 0;
   try {
     do {
@@ -138,6 +139,8 @@ void RunLock::create(const RunDirectory& directory) {
       // Another process may remove the folders that it has made, between here and there.
     } while (!take(directory));
   } catch (const fs::filesystem_error& error) {
+    if (error.code() == std::errc::filename_too_long)
+      throw InputError(fmt::format("{}...: no folder has so long a name", root.string().substr(0, kShownOfLongNames)));
     throw RunError(fmt::format("cannot prepare the folder {}: {}", root.string(), error.code().message()));
   }
 }
@@ -148,9 +151,8 @@ bool RunLock::take(const RunDirectory& directory) {
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     ::close(descriptor);
     throw InputError(
-        fmt::format("another flowskin is already writing into {}; wait for it, stop it, or give another folder "
-                    "to --out",
-                    directory.root().string()));
+        fmt::format("another flowskin is already writing into {}; wait for it, stop it, or use another folder",
+                    "to --out", directory.root().string()));
   }
   struct stat locked {
   }, present{};
