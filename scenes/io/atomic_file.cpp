@@ -7,6 +7,9 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -66,6 +69,20 @@ CommitObserver& commit_observer() {
   return observer;
 }
 
+/// The batch that waits for its end; files come from any thread.
+FileBatch* open_batch = nullptr;
+std::mutex batch_mutex;
+
+fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+
+/// Its names reach the disk. Folders that cannot be opened have none to lose.
+void sync_folder(const fs::path& path) {
+  const int folder = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  ::fsync(folder);
+  ::close(folder);
+}
+
 /// Whether a file is named as AtomicFile names drafts: .NAME.PROCESS-COUNT.part
 bool is_draft(std::string_view name) {
   constexpr std::string_view kEnd = ".part", kDigits = "0123456789";
@@ -86,8 +103,7 @@ void free_slot(int slot) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(const fs::path& file)
-    : file_(file), folder_(file.has_parent_path() ? file.parent_path() : fs::path(".")) {
+AtomicFile::AtomicFile(const fs::path& file) : file_(file), folder_(folder_of(file)) {
   if (!file.has_filename()) throw RunError("cannot write \"" + file.string() + "\": this names no file");
   // The name tells processes and threads apart; a draft that a killed process left behind is passed over.
   static std::atomic<unsigned> counter{0};
@@ -124,24 +140,60 @@ void AtomicFile::commit(bool durable) {
   descriptor_ = -1;
   if (result != 0 && errno != EINTR) fail(errno);
   if (commit_observer()) commit_observer()(file_, draft_, durable);
+  if (const std::scoped_lock lock(batch_mutex); open_batch != nullptr && !durable) {
+    open_batch->waiting_.push_back({file_, draft_, slot_});
+    draft_.clear();
+    slot_ = -1;
+    return;
+  }
   if (::rename(draft_.c_str(), file_.c_str()) != 0) fail(errno);
   renamed_ = true;
-  if (durable) sync_folder();
+  if (durable) sync_folder(folder_);
 }
 
-void AtomicFile::sync_folder() const {
-  const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) return;
-  ::fsync(folder);
-  ::close(folder);
+FileBatch::FileBatch() {
+  const std::scoped_lock lock(batch_mutex);
+  if (open_batch != nullptr) throw std::logic_error("a batch of files within another one");
+  open_batch = this;
+}
+
+FileBatch::~FileBatch() {
+  const std::scoped_lock lock(batch_mutex);
+  open_batch = nullptr;
+  for (const Waiting& waiting : waiting_) {
+    ::unlink(waiting.draft.c_str());
+    free_slot(waiting.slot);
+  }
+}
+
+void FileBatch::commit() {
+  if (waiting_.empty()) return;
+  // One call for all of them takes a fifth of the time of one for each; the record of the run goes with it.
+  sync_file_system(folder_of(waiting_.front().file));
+  std::set<fs::path> folders;
+  while (!waiting_.empty()) {
+    const Waiting& first = waiting_.front();
+    if (::rename(first.draft.c_str(), first.file.c_str()) != 0) fail_to_write(first.file, errno);
+    folders.insert(folder_of(first.file));
+    free_slot(first.slot);
+    waiting_.erase(waiting_.begin());
+  }
+  for (const fs::path& folder : folders) sync_folder(folder);
+}
+
+void sync_file_system(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) fail_to_write(folder, errno);
+  const int error = ::syncfs(descriptor) != 0 ? errno : 0;
+  ::close(descriptor);
+  if (error != 0 && error != EINVAL && error != ENOSYS && error != EINTR) fail_to_write(folder, error);
 }
 
 void AtomicFile::fail(int error) const { fail_to_write(file_, error); }
 
 void fail_to_write(const fs::path& file, int error) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   throw RunError("cannot write " + file.string() + ": " + std::generic_category().message(error) + "; " +
-                 advice(error, folder));
+                 advice(error, folder_of(file)));
 }
 
 void observe_commits(CommitObserver observer) { commit_observer() = std::move(observer); }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string_view>
+#include <vector>
 
 namespace flowskin::scenes {
 
@@ -20,12 +21,12 @@ class AtomicFile {
   void write(std::string_view bytes);
   /// The file in the making, for another program to write.
   const std::filesystem::path& draft() const { return draft_; }
-  /// Gives the file its name. `durable`: the bytes and the name have reached the disk itself, whatever happens then.
+  /// Gives the file its name; within a FileBatch, later. `durable`: the bytes and the name have reached the disk
+  /// itself, whatever happens then, and no batch is waited for.
   void commit(bool durable = false);
 
  private:
   [[noreturn]] void fail(int error) const;
-  void sync_folder() const;
 
   std::filesystem::path file_, folder_, draft_;
   int descriptor_ = -1;
@@ -37,6 +38,34 @@ class AtomicFile {
 /// @throws RunError naming the file and the reason (no space, no permission, no such directory); nothing is left
 /// behind.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// Files that get their names together, once the bytes of all of them are on the disk: as long as it lives, all that
+/// are written in this process. After a power cut, as after a kill, a file that is there is whole.
+class FileBatch {
+ public:
+  /// There is one at a time. @throws std::logic_error where there are two.
+  FileBatch();
+  /// Without commit() nothing is left behind.
+  ~FileBatch();
+  FileBatch(const FileBatch&) = delete;
+  FileBatch& operator=(const FileBatch&) = delete;
+
+  /// The files, their names, and whatever else has been written to the same file system are on the disk then.
+  /// @throws RunError; the files that have not got their names yet are left out.
+  void commit();
+
+ private:
+  friend class AtomicFile;
+  struct Waiting {
+    std::filesystem::path file, draft;
+    int slot;
+  };
+
+  std::vector<Waiting> waiting_;
+};
+
+/// All that has been written to the file system of this folder is on the disk then. @throws RunError
+void sync_file_system(const std::filesystem::path& folder);
 
 /// Is told of each file that is whole but has not got its name yet: what it says comes before the file, even where the
 /// program is killed. Where it throws, the file does not get its name.

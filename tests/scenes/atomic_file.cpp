@@ -129,6 +129,46 @@ TEST_F(AtomicFileTest, AnObserverKnowsOfFilesBeforeTheyHaveTheirNames) {
   EXPECT_EQ(files_in_folder(), 2U);
 }
 
+TEST_F(AtomicFileTest, ABatchGivesAllNamesAtOnceOrNone) {
+  write_file(path("a.txt"), "old");
+  {
+    FileBatch batch;
+    write_file(path("a.txt"), "new");
+    write_file(path("b.txt"), "b");
+    write_file(path("b.txt"), "c");
+    EXPECT_EQ(read_text(path("a.txt")), "old");
+    EXPECT_FALSE(std::filesystem::exists(path("b.txt")));
+    AtomicFile now(path("now.txt"));
+    now.commit(true);  // needs no batch
+    EXPECT_TRUE(std::filesystem::exists(path("now.txt")));
+    EXPECT_THROW(FileBatch(), std::logic_error);
+    batch.commit();
+    EXPECT_EQ(read_text(path("a.txt")), "new");
+    EXPECT_EQ(read_text(path("b.txt")), "c");
+    write_file(path("later.txt"), "x");
+  }
+  {
+    const FileBatch batch;
+    write_file(path("a.txt"), "never");
+  }
+  EXPECT_EQ(read_text(path("a.txt")), "new");
+  EXPECT_EQ(files_in_folder(), 3U) << "a draft was left, or what was not committed has its name";
+}
+
+TEST_F(AtomicFileTest, ABatchThatCannotGoOnSaysWhereAndLeavesNoDrafts) {
+  write_file(path("a.txt"), "old");
+  std::filesystem::create_directories(path("b.txt"));
+  const std::string message = message_of<RunError>([&] {
+    FileBatch batch;
+    write_file(path("a.txt"), "new");
+    write_file(path("b.txt"), "b");
+    write_file(path("c.txt"), "c");
+    batch.commit();
+  });
+  EXPECT_NE(message.find("b.txt"), std::string::npos) << message;
+  EXPECT_EQ(files_in_folder(), 2U);
+}
+
 TEST_F(AtomicFileTest, ThreadsThatWriteTheSameFileLeaveOneOfThem) {
   std::vector<std::thread> threads;
   for (int k = 0; k < 4; ++k)

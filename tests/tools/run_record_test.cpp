@@ -153,9 +153,14 @@ TEST_F(RunRecords, TheDefaultFolderIsTakenAgainWhereNothingIsLost) {
 TEST_F(RunRecords, LossesAreNoticed) {
   begin_record(directory(), "a");
   directory().make_folders();
-  const RunRecorder recorder(directory(), RunRecorder::Work::whole_run);
+  RunRecorder recorder(directory(), RunRecorder::Work::whole_run);
   scenes::write_file(directory().surface(0, ".obj"), "x");
   scenes::write_file(directory().surface(1, ".obj"), "x");
+  recorder.keep_frame();
+  {  // A frame that was not finished is none that is lost.
+    const scenes::FileBatch dropped;
+    scenes::write_file(directory().surface(2, ".obj"), "x");
+  }
   EXPECT_EQ(recorder.loss(), "");
   fs::remove(directory().surface(0, ".obj"));
   EXPECT_THAT(recorder.loss(), HasSubstr("1 of the 2 files"));

@@ -131,8 +131,9 @@ void FrameLoop::step_to(double time) {
   pause();
 }
 
-/// Files, pictures and numbers of the frame.
+/// Files, pictures and numbers of the frame: all of them are on the disk then, or none is there.
 void FrameLoop::record() {
+  scenes::FileBatch files;
   const RestFrame rest = rest_frame_of(scene_.texture);
   const ParticleFrame particles = dress(nearer_state(source_->state()), source_->spacing(), rest);
   std::optional<SurfaceFrame> shown;
@@ -142,6 +143,13 @@ void FrameLoop::record() {
   output_.write(frame_, particles, shown_surface);
   if (comparison_) comparison_->record(frame_, rest, particles);
   const FrameRow& row = table_.add_frame(frame_, *source_, particles.state.positions.size(), surface(), shown_surface);
+  try {
+    clock_.stages.time("forcing to the disk", [&] { files.commit(); });
+  } catch (...) {
+    table_.drop_frame();
+    throw;
+  }
+  recorder_.keep_frame();
   if (row.reextractions > 0)
     log_.detail(fmt::format("frame {}: surface extracted anew {} time(s): {}", frame_, row.reextractions,
                             table_.statistics().last_reason()));
@@ -233,6 +241,7 @@ void FrameLoop::finish() {
   for (const std::string& line : lines_at_end(scene_, *source_, surface(), table_, clock_)) log_.info(line);
   if (comparison_)
     for (const std::string& line : comparison_->ranking()) log_.info(line);
+  scenes::sync_file_system(directory_.root());
   checkpoints_.mark_complete(scene_.frames);
   log_.info("done: " + directory_.root().string());
   if (!log_.failure().empty()) log_.warning("log.txt is not complete: " + log_.failure());

@@ -20,7 +20,12 @@ const FrameRow& FrameTable::add_frame(int frame, const scenes::ParticleSource& s
   row.seconds_pictures = since_last_row("pictures");
   row.seconds_statistics = since_last_row("statistics");
   rows_.push_back(row);
-  write_frames_csv(file_, rows_);
+  try {
+    write_frames_csv(file_, rows_);
+  } catch (...) {
+    drop_frame();
+    throw;
+  }
   return rows_.back();
 }
 

@@ -29,6 +29,9 @@ class FrameTable {
   const FrameRow& add_frame(int frame, const scenes::ParticleSource& source, std::size_t particles,
                             const TrackedSurface* surface, const SurfaceFrame* shown);
 
+  /// Takes back the last row: its frame could not be written.
+  void drop_frame() { rows_.pop_back(); }
+
   const std::vector<FrameRow>& rows() const { return rows_; }
   const FrameStatistics& statistics() const { return statistics_; }
 

@@ -140,8 +140,10 @@ void RunRecorder::record(const fs::path& file, const fs::path& draft, bool durab
   const FileStamp stamp = stamp_of(draft).value_or(FileStamp{});
   append(fmt::format("file {} {} {}", name, stamp.bytes, stamp.written));
   if (durable) ::fdatasync(descriptor_);
-  if (is_of_a_frame(name)) names_.insert(name);
+  if (is_of_a_frame(name)) written_.insert(name);
 }
+
+void RunRecorder::keep_frame() { names_.merge(written_); }
 
 /// In one go: other processes may add lines as well.
 void RunRecorder::append(const std::string& line) {
@@ -157,6 +159,7 @@ void RunRecorder::finish(int frames) {
   const FileStamp log = stamp_of(directory_.log()).value_or(FileStamp{});
   append(fmt::format("file {} {} {}", directory_.log().filename().string(), log.bytes, log.written));
   append(fmt::format("done {}", frames));
+  ::fdatasync(descriptor_);
 }
 
 std::string RunRecorder::loss() const {

@@ -65,7 +65,9 @@ class RunRecorder {
   RunRecorder(const RunRecorder&) = delete;
   RunRecorder& operator=(const RunRecorder&) = delete;
 
-  /// The run has ended, with so many frames after the first.
+  /// The files of frames that were written since the last call count as there from now on.
+  void keep_frame();
+  /// The run has ended, with so many frames after the first; that is on the disk then.
   void finish(int frames);
   /// What has become of the folder and of the files of its frames meanwhile; empty: all are there.
   std::string loss() const;
@@ -79,7 +81,8 @@ class RunRecorder {
   int descriptor_ = -1;
   dev_t device_ = 0;  // of the folder, which may be replaced by another one of its name
   ino_t inode_ = 0;
-  std::set<std::string> names_;  // of the files of the frames
+  std::set<std::string> names_;    // of the files of the frames
+  std::set<std::string> written_;  // of those of the frame that is being written
 };
 
 }  // namespace flowskin::tools
