@@ -152,7 +152,7 @@ bool RunLock::take(const RunDirectory& directory) {
     ::close(descriptor);
     throw InputError(
         fmt::format("another flowskin is already writing into {}; wait for it, stop it, or use another folder",
-                    "to --out", directory.root().string()));
+                    directory.root().string()));
   }
   struct stat locked {
   }, present{};
