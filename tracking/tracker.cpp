@@ -16,6 +16,7 @@
 #include "tracking/fairing/fairing.h"
 #include "tracking/fairing/repair.h"
 #include "tracking/material/material.h"
+#include "tracking/material/surface_material.h"
 #include "tracking/mesh/adjacency.h"
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
@@ -336,8 +337,10 @@ class TrackerImpl {
       Stopwatch watch(report_.seconds_fairing);
       std::vector<Confidence> confidence;
       if (settings_.variable_springs) confidence = field_confidence(*field_, mesh_.positions);
-      fair(*near_, topology_, rest_lengths_, {settings_.fairing_iterations, settings_.fairing_stiffness}, confidence,
-           mesh_.positions);
+      slide([&] {
+        fair(*near_, topology_, rest_lengths_, {settings_.fairing_iterations, settings_.fairing_stiffness}, confidence,
+             mesh_.positions);
+      });
       if (settings_.remeshing) remesh_surface();
     }
     Projection projection;
@@ -346,8 +349,18 @@ class TrackerImpl {
       projection = project_to_surface(*field_, default_projection(scale_), mesh_.positions);
     }
     Stopwatch watch(report_.seconds_fairing);
-    repair(*field_, default_projection(scale_), topology_, mesh_.triangles, mesh_.positions, projection);
+    slide(
+        [&] { repair(*field_, default_projection(scale_), topology_, mesh_.triangles, mesh_.positions, projection); });
     return projection;
+  }
+
+  // The material stays where it is while vertices move along the surface.
+  template <class Move>
+  void slide(const Move& move) {
+    if (settings_.fairing_drags) return move();
+    const std::vector<Vec3> before = mesh_.positions;
+    move();
+    take_material_of_new_places(before, topology_, mesh_);
   }
 
   // After a change of the triangles; the springs of edges that stay keep their rest lengths.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/closest_point.h"
+#include "tracking/material/surface_material.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/vertex_attributes.h"
 
@@ -15,7 +16,6 @@ namespace {
 constexpr double kSameSide = 0.3;         // cosine between a new vertex's normal and the old triangle's
 constexpr double kForeign = 2.0;          // particles whose rest positions are this many radii from the nearest's
 constexpr double kTorn = 0.15;            // radii by which the fit may miss the displacement of the nearest particle
-constexpr double kTornEdge = 3;           // times the longest edge of a triangle: two bodies have met there
 constexpr double kRegularization = 1e-6;  // of the moment matrix; keeps planar neighbourhoods solvable
 
 // Neighbours of x, the nearest first is `nearest`; the support grows until it holds a particle.
@@ -167,19 +167,23 @@ MaterialCarrier::MaterialCarrier(const std::vector<Vec3>& positions, const std::
       field_(field),
       particles_(particles),
       settings_(settings),
-      tree_(positions, triangles) {}
+      tree_(positions, triangles),
+      adjacency_(build_adjacency(static_cast<int>(positions.size()), triangles)),
+      normals_(vertex_normals(positions, triangles)) {}
 
-Vec3 MaterialCarrier::interpolated(const MeshPoint& point, const std::vector<Vec3>& values) const {
+Vec3 MaterialCarrier::on_triangle(const MeshPoint& point, const std::vector<Vec3>& values) const {
   const Triangle& corners = triangles_[point.triangle];
-  if (is_torn(corners, positions_, values)) {
-    const auto heaviest = std::max_element(point.weights.begin(), point.weights.end()) - point.weights.begin();
-    return values[corners[heaviest]];
-  }
   Vec3 sum = Vec3::Zero();
-  for (int corner = 0; corner < 3; ++corner) {
-    sum += point.weights[corner] * values[triangles_[point.triangle][corner]];
-  }
+  for (int corner = 0; corner < 3; ++corner) sum += point.weights[corner] * values[corners[corner]];
   return sum;
+}
+
+Vec3 MaterialCarrier::on_surface(const MeshPoint& point, const std::vector<Vec3>& values) const {
+  const Triangle& corners = triangles_[point.triangle];
+  const int heaviest = corners[std::max_element(point.weights.begin(), point.weights.end()) - point.weights.begin()];
+  if (is_torn(corners, positions_, values)) return values[heaviest];
+  const MaterialChart chart({positions_, adjacency_, normals_}, heaviest, values);
+  return chart.place_at(chart.on_surface(on_triangle(point, positions_)), values);
 }
 
 void MaterialCarrier::append_material(const SurfaceMesh& old, std::span<const Vec3> places,
@@ -208,11 +212,11 @@ MaterialCarrier::Source MaterialCarrier::source_of(const Vec3& x, const Vec3& no
 
 Vec3 MaterialCarrier::place(const Vec3& x, const Source& source, const std::vector<Vec3>& on_mesh,
                             const std::vector<Vec3>& on_particles) const {
-  if (source.same_side.triangle >= 0) return interpolated(source.same_side, on_mesh);
+  if (source.same_side.triangle >= 0) return on_surface(source.same_side, on_mesh);
   if (!on_particles.empty())
     return material_place_at(particles_of(field_, "the material of particles"), on_particles, x);
   const MeshPoint& far = source.any_side;
-  return far.triangle < 0 ? x : x + interpolated(far, on_mesh) - interpolated(far, positions_);
+  return far.triangle < 0 ? x : x + on_triangle(far, on_mesh) - on_triangle(far, positions_);
 }
 
 std::vector<int> same_vertices(const SurfacePoints& old_vertices, const SurfacePoints& new_vertices, double reach) {

@@ -8,6 +8,7 @@
 #include "tracking/extraction/marching_cubes.h"
 #include "tracking/field/implicit_field.h"
 #include "tracking/field/particle_field.h"
+#include "tracking/mesh/adjacency.h"
 #include "tracking/mesh/point_tree.h"
 #include "tracking/mesh/surface_mesh.h"
 #include "tracking/particles.h"
@@ -50,7 +51,7 @@ struct MaterialSettings {
 };
 
 /// Tells where the material of a place on the surface was at rest: the rest position of the closest point of an old
-/// surface that looks the same way, interpolated once over its triangle; where there is none, that of the particles
+/// surface that looks the same way, interpolated there as by MaterialChart; where there is none, that of the particles
 /// beneath. The old surface is preferred even where the particles have come to disagree with it: where both were used
 /// side by side, the texture would tear. Where particles know no rest positions, new surface takes the displacement of
 /// the closest point of the old one within far_reach, whichever way it looks: wrong by at most twice their distance
@@ -75,7 +76,8 @@ class MaterialCarrier {
   /// @param on_mesh of the old surface's vertices  @param on_particles of the particles; empty: unknown
   Vec3 place(const Vec3& x, const Source& source, const std::vector<Vec3>& on_mesh,
              const std::vector<Vec3>& on_particles) const;
-  Vec3 interpolated(const MeshPoint& point, const std::vector<Vec3>& values) const;
+  Vec3 on_triangle(const MeshPoint& point, const std::vector<Vec3>& values) const;
+  Vec3 on_surface(const MeshPoint& point, const std::vector<Vec3>& values) const;
 
   const std::vector<Vec3>& positions_;
   const std::vector<Triangle>& triangles_;
@@ -83,6 +85,8 @@ class MaterialCarrier {
   const Particles& particles_;
   MaterialSettings settings_;
   ClosestPointTree tree_;
+  MeshAdjacency adjacency_;
+  std::vector<Vec3> normals_;
 };
 
 /// The places of layer k of the particles; none where they are unknown.
