@@ -169,15 +169,16 @@ double translation_error(const std::string& method, int states, Known known) {
 }
 
 TEST(BlendedStates, ATranslatingBodyWithoutIdsIsTracked) {
-  const std::map<std::string, double> bounds = {{"affine", 0.05}, {"total", 0.35}};
+  const std::map<std::string, double> bounds = {{"affine", 0.07}, {"total", 0.4}};
   for (const auto& [method, bound] : bounds) {
-    // With velocities the blend of the moved states is exact here; what is left is fairing.
-    EXPECT_LT(translation_error(method, 10, velocities), 0.01) << method;
+    // With velocities the blend of the moved states is exact here, and fairing leaves the material where it is.
+    EXPECT_LT(translation_error(method, 10, velocities), 1e-10) << method;
     // Without them the surface lags behind along itself, by a share of its path that falls with the step: here of 0.09
     // and 0.045 effective radii.
     const double coarse = translation_error(method, 10, nothing), fine = translation_error(method, 20, nothing);
     EXPECT_LT(coarse, bound) << method;
-    EXPECT_LT(fine, 0.6 * coarse) << method;
+    // Fairing that drags the material along would hide some of it: it carries the motion of the ends into the sides.
+    EXPECT_LT(fine, 0.8 * coarse) << method;
   }
 }
 

@@ -31,7 +31,7 @@ TEST(Layers, VerticesKeepThePlacesOfTheMomentInWhichTheyBegan) {
   std::map<std::uint64_t, Vec3> places;
   for (std::size_t v = 0; v < tracker.mesh().ids.size(); ++v)
     places[tracker.mesh().ids[v]] = tracker.mesh().positions[v];
-  int kept = 0, moved = 0, born = 0, changes = 0;
+  int kept = 0, born = 0, changes = 0;
   for (int frame = 2; frame <= 12; ++frame) {
     Particles particles = test::rigidly_moved(start, spin, drift, 0.1 * frame);
     particles.layers = {test::rigidly_moved(start, spin, drift, 0.1).positions};
@@ -42,22 +42,17 @@ TEST(Layers, VerticesKeepThePlacesOfTheMomentInWhichTheyBegan) {
     double squares = 0;
     for (std::size_t v = 0; v < mesh.ids.size(); ++v) {
       const auto found = places.find(mesh.ids[v]);
-      if (found != places.end()) {
-        ++kept;
-        moved += mesh.layers[0][v] != found->second;
-      }
+      kept += found != places.end();
       born += found == places.end();
       const Vec3 still = test::rotation(spin * 0.1) *
                              (test::rotation(-spin * 0.1 * frame) * (mesh.positions[v] - drift * 0.1 * frame)) +
                          drift * 0.1;
       squares += (mesh.layers[0][v] - still).squaredNorm();
     }
-    // What the tracking itself lets the material slip along the surface.
-    EXPECT_LT(std::sqrt(squares / static_cast<double>(mesh.ids.size())), 0.2 * kEdge) << frame;
+    // What the midpoint rule turns too far: vertices slide along the surface, but their material stays where it is.
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(mesh.ids.size())), 0.02 * kEdge) << frame;
   }
   EXPECT_GT(kept, 1000);
-  // In a replaced region a new vertex may go on under the id of an old one beside it.
-  EXPECT_LT(moved, kept / 500);
   EXPECT_EQ(born > 0, changes > 0);
   tracker.drop_layer(0);
   EXPECT_TRUE(tracker.mesh().layers.empty());
