@@ -114,6 +114,8 @@ class ShearedBall {
     tracking::TrackerSettings settings;
     settings.spacing = spacing;
     settings.velocity = "hybrid";
+    // A vertex that slides shows another place of the image; here it shows the same one as long as none jumps.
+    settings.fairing_drags = true;
     return {settings, at(0)};
   }
 
