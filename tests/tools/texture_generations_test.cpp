@@ -110,7 +110,7 @@ class ShearedBall {
     }
     return particles;
   }
-  tracking::Tracker tracker(bool fairing_drags) const {
+  tracking::Tracker tracker(bool fairing_drags = false) const {
     tracking::TrackerSettings settings;
     settings.spacing = spacing;
     settings.velocity = "hybrid";
