@@ -25,7 +25,7 @@ struct TrackerSettings {
   Integrator integrator = Integrator::rk2;
   double max_motion = 0.25;        ///< A substep moves no particle further than this share of the effective radius.
   double edge_length = 0;          ///< Edge length of an extracted mesh (m); 0: 0.75 spacings.
-  int fairing_iterations = 3;      ///< [FMM13, 3.4]; the paper has 10.
+  int fairing_iterations = 10;     ///< [FMM13, 3.4]
   double fairing_stiffness = 0.3;  ///< Share of the way to the spring equilibrium an iteration goes, 0 to 1.
   bool fairing_drags = false;      ///< Vertices that fairing moves take their material along [FMM13]; else it stays.
   bool variable_springs = false;   ///< Fairing is soft where the field determines the velocity well.

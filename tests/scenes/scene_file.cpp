@@ -70,7 +70,7 @@ const char* const full_scene = R"({
     "slip": 0.4, "surface_velocity": [0.5, 0, 0.1], "interpolation": "smooth", "pivot": [0.1, 1, 0],
     "keyframes": [{"time": -0.5, "translate": [0, 1, 0], "rotate": [5, 0, 7]}, {"time": 2.5, "translate": [3, 0, 1], "rotate": [0, 400, 0]}], "visible": false, "color": [0.1, 0.2, 0.3]}],
   "tracking": {"enabled": false, "velocity": "total", "integrator": "rk4", "steps_per_frame": 3, "max_motion": 0.2,
-    "radius": 2.1, "threshold": 0.7, "wall_share": 0.2, "edge_length": 0.9, "curvature_edges": 0.6, "smallest_part": 9.5, "small_parts": "balls", "fairing_iterations": 4, "fairing_stiffness": 0.4, "fairing_material": "dragged", "fairing_springs": "variable", "confidence": true, "remeshing": false, "max_slip": 2.5, "topology": false, "guard": false},
+    "radius": 2.1, "threshold": 0.7, "wall_share": 0.2, "edge_length": 0.9, "curvature_edges": 0.6, "smallest_part": 9.5, "small_parts": "balls", "fairing_iterations": 3, "fairing_stiffness": 0.4, "fairing_material": "dragged", "fairing_springs": "variable", "confidence": true, "remeshing": false, "max_slip": 2.5, "topology": false, "guard": false},
   "texture": {"image": "marble", "mapping": "planar", "tile_size": 0.3, "axis": [1, 0, 0], "rest_center": [0.1, 0, 0], "rest_size": 2,
     "when_stretched": "fade", "stretch_limit": 3.5},
   "render": {"enabled": false, "camera": {"position": [1, 2, 3], "look_at": [0, 0.5, 0], "up": [0, 0, 1],

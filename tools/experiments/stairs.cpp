@@ -56,7 +56,6 @@ class StairsRun {
       tracking::TrackerSettings settings = scenes::settings_in_metres(scene_);
       settings.velocity = method;
       settings.max_slip = 0;
-      settings.fairing_iterations = 10;  // the paper's fairing
       settings.fairing_drags = true;
       walkers_.push_back({method, tracking::Tracker(settings, to_particles(source_->state())), 0, {}, 0, {}});
     }

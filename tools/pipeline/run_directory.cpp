@@ -111,14 +111,15 @@ void RunDirectory::make_folders() const {
 }
 
 RunLock::~RunLock() {
-  if (descriptor_ < 0) return;  // whoever has the lock may be about to write into the folders made here
+  // Whoever has got the lock of a folder that was made here may be about to write into it.
+  if (descriptor_ < 0 && !made_.empty() && made_.back() == root_) made_.pop_back();
   std::error_code ignored;
   for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, ignored);
-  ::close(descriptor_);
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void RunLock::create(const RunDirectory& directory) {
-  const fs::path& root = directory.root();
+  const fs::path& root = root_ = directory.root();
   std::error_code ignored;
   if (fs::exists(root, ignored) && !fs::is_directory(root, ignored))
     throw InputError(fmt::format("{} is a file; --out needs a folder", root.string()));

@@ -66,7 +66,7 @@ class RunDirectory {
 class RunLock {
  public:
   RunLock() = default;
-  /// Folders that were made for a lock that was won, and are still empty, go again.
+  /// Folders that were made for the lock and are still empty go again, but not one whose lock another process won.
   ~RunLock();
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
@@ -80,6 +80,7 @@ class RunLock {
 
  private:
   int descriptor_ = -1;
+  std::filesystem::path root_;
   std::vector<std::filesystem::path> made_;  // from the outermost
 };
 

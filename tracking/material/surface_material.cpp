@@ -115,9 +115,12 @@ Vec3 MaterialChart::place_at(const Vec3& x, const std::vector<Vec3>& places) con
   const Mat3 map = frame_of(u_then, v_then) * now.inverse();
   const Vec3 moved = x - positions_[vertex_];
   Vec3 place = home + map * moved;
-  for (const Neighbor& neighbor : neighbors_)
+  double reach = 0;  // of what the neighbours know; beyond it the fit only guesses
+  for (const Neighbor& neighbor : neighbors_) {
     place += share_at(neighbor, moved) * (places[neighbor.vertex] - home - map * neighbor.offset);
-  return place;
+    reach = std::max(reach, (places[neighbor.vertex] - home).norm());
+  }
+  return (place - home).norm() <= reach ? place : home;
 }
 
 int nearest_by_walk(const KnownSurface& surface, int start, const Vec3& x) {
