@@ -72,6 +72,18 @@ TEST_F(ImageTest, SaysWhatIsWrongWithAFile) {
   EXPECT_FALSE(std::filesystem::exists(path("b.png")));
 }
 
+TEST_F(ImageTest, AHeadAloneTakesNoMemory) {
+  std::string tga(18, '\0');
+  tga[2] = 10;  // runs of pixels
+  tga[13] = tga[15] = 0x40;
+  tga[16] = 24;
+  const std::string message = message_of<InputError>([&] { read_image(write_text("a.tga", tga + "1234")); });
+  EXPECT_NE(message.find("22 bytes cannot hold 16384 x 16384 pixels"), std::string::npos) << message;
+  // The densest that there is: all white, a byte for up to 1032 pixels.
+  write_png(path("white.png"), Image{2048, 2048, std::vector<Color>(2048 * 2048, Color{255, 255, 255})});
+  EXPECT_EQ(read_image(path("white.png")).at(2047, 2047), (Color{255, 255, 255}));
+}
+
 TEST_F(ImageTest, TexturesByName) {
   EXPECT_EQ(make_texture("checker", folder_).pixels, checker_texture(1024).pixels);
   EXPECT_EQ(make_texture("marble", folder_).pixels, marble_texture(1024, 1).pixels);

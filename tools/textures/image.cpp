@@ -1,6 +1,7 @@
 #include "tools/textures/image.h"
 
 #include <climits>
+#include <cstdint>
 #include <memory>
 
 // Static, so that another program part may have its own copy of stb.
@@ -26,6 +27,9 @@ namespace flowskin::tools {
 namespace {
 
 constexpr int kLargestEdge = 16384;  ///< pixels; the largest that graphics hardware takes
+/// Deflate packs 1032 bytes into one, and a byte holds eight pixels at most; no format that is read packs better. More
+/// are asked for by damaged files only, which would fill the memory.
+constexpr std::uint64_t kMostPixelsPerByte = 8 * 1032;
 constexpr int kDefaultTextureSize = 1024;
 
 void append(void* text, void* data, int size) {
@@ -46,6 +50,9 @@ Image read_image(const std::filesystem::path& file) {
   if (width < 1 || height < 1 || width > kLargestEdge || height > kLargestEdge)
     throw InputError(name + ": " + std::to_string(width) + " x " + std::to_string(height) + " pixels; at most " +
                      std::to_string(kLargestEdge) + " are possible in each direction");
+  if (static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > kMostPixelsPerByte * bytes.size())
+    throw InputError(name + ": the image is damaged (" + std::to_string(bytes.size()) + " bytes cannot hold " +
+                     std::to_string(width) + " x " + std::to_string(height) + " pixels)");
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, size, &width, &height, &channels, 4), &stbi_image_free);
   if (!pixels) throw InputError(name + ": the image is damaged (" + stbi_failure_reason() + ")");
