@@ -147,8 +147,10 @@ std::vector<Vec3> vectors(const Triple& columns, std::vector<Vec3> fallback, con
       throw InputError(name + ", particle " + std::to_string(i + 1) + ": the " + what +
                        " is not finite; --skip-invalid leaves such particles out");
     if (const double most = result[i].cwiseAbs().maxCoeff(); most > largest_value)
-      throw InputError(fmt::format("{}, particle {}: the {} has a component of {:.4g} {}, more than {:g}; is that so?",
-                                   name, i + 1, what, most, unit, largest_value));
+      throw InputError(
+          fmt::format("{}, particle {}: the {} has a component of {:.4g} {}, more than {:g}; is that so? --region and "
+                      "--skip-invalid leave such particles out",
+                      name, i + 1, what, most, unit, largest_value));
   }
   return result;
 }

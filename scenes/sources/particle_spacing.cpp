@@ -9,6 +9,8 @@
 #include <numbers>
 #include <tuple>
 
+#include "common/outliers.h"
+
 namespace flowskin::scenes {
 namespace {
 
@@ -209,7 +211,7 @@ SpacingEstimate estimate_spacing(const std::vector<Vec3>& positions) {
   const PointCloud cloud{points};
   const PointTree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
   const std::vector<Vec3> samples = samples_of(points);
-  estimate.dimensions = dimensions_of(points);
+  estimate.dimensions = dimensions_of(without_outliers(points, 0));
   const std::vector<double> edges = cell_edges(samples, tree, points, estimate.dimensions);
   const double edge = quantile(edges, 0.5);
   if (edges.size() < 4) {

@@ -7,7 +7,9 @@
 #include <functional>
 #include <numeric>
 
+#include "common/bounds.h"
 #include "common/errors.h"
+#include "common/outliers.h"
 #include "scenes/io/checksum.h"
 #include "scenes/io/read_bytes.h"
 #include "scenes/sources/forward_time.h"
@@ -153,6 +155,32 @@ ParticleState blended(const ParticleState& a, const ParticleState& b, double s, 
   return state;
 }
 
+/// Leaves out particles so far from nearly all others that no grid reaches them. @return how many
+std::size_t leave_out_strays(ParticleState& state, double spacing) {
+  constexpr double farthest = 1e5;  // spacings from the box of nearly all
+  const std::size_t count = state.ids.size();
+  if (count == 0) return 0;
+  const Box box = bounds(without_outliers(state.positions, farthest * spacing));
+  const auto is_inside = [&](const Vec3& x) {
+    return ((x - box.min).array() >= 0).all() && ((box.max - x).array() >= 0).all();
+  };
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_inside(state.positions[i])) continue;
+    state.ids[kept] = state.ids[i];
+    state.positions[kept] = state.positions[i];
+    state.velocities[kept] = state.velocities[i];
+    state.rest_positions[kept] = state.rest_positions[i];
+    state.densities[kept++] = state.densities[i];
+  }
+  state.ids.resize(kept);
+  state.positions.resize(kept);
+  state.velocities.resize(kept);
+  state.rest_positions.resize(kept);
+  state.densities.resize(kept);
+  return count - kept;
+}
+
 /// A particle's place in another file.
 struct PlaceInFile {
   double time;  // from the file in question (s)
@@ -271,6 +299,7 @@ void RecordedSource::read_into_cache(std::size_t k) {
   left_out_[k] = file.left_out;
   ParticleState state = std::move(file.state);
   if (sequence_.ids != ParticleSequence::Ids::of_files) std::iota(state.ids.begin(), state.ids.end(), 0);
+  left_out_[k].unwanted += leave_out_strays(state, spacing_);
   settle_rest_positions(k, state);
   cache_[k] = std::move(state);
   if (!checksums_.contains(k)) checksums_[k] = checksum(0, read_bytes(sequence_.files[k]));
@@ -432,8 +461,9 @@ SourceStatistics RecordedSource::statistics() const {
   statistics.skipped_invalid = left_out.invalid;
   statistics.skipped_duplicates = left_out.duplicate;
   if (left_out.unwanted + left_out.invalid + left_out.duplicate > 0)
-    statistics.summary += fmt::format("; left out of the file at hand: {} not wanted, {} invalid, {} duplicate",
-                                      left_out.unwanted, left_out.invalid, left_out.duplicate);
+    statistics.summary +=
+        fmt::format("; left out of the file at hand: {} not wanted or too far out, {} invalid, {} duplicate",
+                    left_out.unwanted, left_out.invalid, left_out.duplicate);
   return statistics;
 }
 

@@ -468,6 +468,23 @@ TEST_F(RecordedSourceTest, IsNotResumedWithOtherParticles) {
   EXPECT_THAT(error_of([&] { resume(); }), AllOf(HasSubstr("f_1.ply"), HasSubstr("changed")));
 }
 
+TEST_F(RecordedSourceTest, AParticleThatFlewOffIsLeftOutWhereNoGridReachesIt) {
+  for (int k = 0; k < 2; ++k) {
+    std::vector<TestParticle> particles;
+    for (std::uint64_t i = 0; i < 60; ++i)
+      particles.push_back({i, 0.1 * Vec3(double(i % 4), double(i / 4 % 4), double(i / 16))});
+    particles.push_back({60, k == 0 ? Vec3(0.4, 0, 0) : Vec3(1e7, 0, 0)});
+    particles.push_back({61, Vec3(50, 0, 0)});
+    write(fmt::format("stray_{}.ply", k), particles, with_ids);
+  }
+  const auto source = open("stray_*.ply");
+  EXPECT_EQ(source->state().ids.size(), 62U);
+  EXPECT_EQ(source->statistics().not_wanted, 0U);
+  source->advance_to(0.5);
+  EXPECT_EQ(source->state().ids.size(), 61U);
+  EXPECT_EQ(source->statistics().not_wanted, 1U);
+}
+
 TEST_F(RecordedSourceTest, VelocitiesThatContradictTheMotionAreWarnedOf) {
   const auto write_moving = [&](const std::string& name, double factor) {
     for (int k = 0; k < 3; ++k) {

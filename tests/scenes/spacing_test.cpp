@@ -107,6 +107,9 @@ TEST(Spacing, PlanesAndLinesAreKnown) {
   EXPECT_EQ(estimate_spacing(lattice(20, 1, 20)).dimensions, 2);
   EXPECT_EQ(estimate_spacing(lattice(20, 1, 1)).dimensions, 1);
   EXPECT_EQ(estimate_spacing(lattice(20, 2, 20)).dimensions, 3);
+  Points stray = lattice(6, 6, 6);
+  stray.emplace_back(1e7, 3e6, 0);
+  EXPECT_EQ(estimate_spacing(stray).dimensions, 3);
   EXPECT_NEAR(estimate_spacing(lattice(20, 1, 1)).spacing, 1, 1e-9);
 }
 
