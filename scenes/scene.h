@@ -59,9 +59,13 @@ struct MotionSpec {
 struct RecordedSpec {
   /// Files, patterns such as run/particles/frame_*.ply, folders, or one .pvd; relative to the scene file.
   std::vector<std::string> files;
-  double frame_interval = 0;  ///< s between files; 0: the times in the files, else 1/30 s
+  double frame_interval = 0;    ///< s between files; 0: the times in the files, else 1/30 s
+  bool times_in_names = false;  ///< The numbers in the files' names are their times (s).
   enum class Ids { automatic, order, none };
   Ids ids = Ids::automatic;  ///< docs/track.md
+  std::string keep;          ///< Expression that the particles must fulfil, such as "Type == 1"; empty: all.
+  std::vector<Vec3> region;  ///< Two corners: only particles between them (m); empty: all.
+  bool skip_invalid = false, skip_duplicates = false;
 };
 
 struct ParticlesSpec {

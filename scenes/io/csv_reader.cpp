@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <vector>
 
 #include "common/errors.h"
 #include "common/number_text.h"
+#include "scenes/io/number_words.h"
 #include "scenes/io/particle_columns.h"
 
 namespace flowskin::scenes {
@@ -14,26 +17,34 @@ namespace {
 
 constexpr std::size_t most_columns = 4096;
 
+/// So many lines may stand before the column names.
+constexpr std::size_t longest_preface = 100;
+
 /// The lines of a text, counted.
 class Lines {
  public:
-  explicit Lines(std::string_view text) : text_(text) {
+  explicit Lines(std::string_view text) : text_(text), line_end_(text.find('\n') != text.npos ? '\n' : '\r') {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // the mark that Windows programs put first
   }
   bool next(std::string_view& line) {
     if (text_.empty()) return false;
-    const std::size_t end = text_.find('\n');
+    const std::size_t end = text_.find(line_end_);
     line = text_.substr(0, end);
     text_.remove_prefix(end == std::string_view::npos ? text_.size() : end + 1);
+    open_end_ = end == std::string_view::npos;
     while (line.ends_with('\r') || line.ends_with(' ')) line.remove_suffix(1);
     skip_space(line, " ");
     ++number_;
     return true;
   }
   std::size_t number() const { return number_; }
+  /// Whether the text ended before the line did.
+  bool at_open_end() const { return open_end_; }
 
  private:
   std::string_view text_;
+  char line_end_;
+  bool open_end_ = false;
   std::size_t number_ = 0;
 };
 
@@ -87,25 +98,54 @@ bool is_number(std::string_view cell) {
   return take_number(cell, value) && cell.empty();
 }
 
+std::vector<std::string> cells_of(std::string_view line, char separator) {
+  std::vector<std::string> result;
+  Cells cells(line, separator);
+  for (std::string_view cell; result.size() <= most_columns && cells.next(cell);) result.emplace_back(cell);
+  while (!result.empty() && result.back().empty()) result.pop_back();  // a separator at the end of the line
+  return result;
+}
+
+std::string_view without_mark(std::string_view line) {
+  while (line.starts_with('#')) line.remove_prefix(1);
+  skip_space(line, " ");
+  return line;
+}
+
+/// A line such as "Time: 0.25 s" or "# time = 0.25".
+std::optional<double> time_in_line(std::string_view line) {
+  line = without_mark(line);
+  if (line.size() < 5 || plain_column_name(std::string(line.substr(0, 4))) != "time") return std::nullopt;
+  line.remove_prefix(4);
+  skip_space(line, " \t:=,;\"");
+  double value = 0;
+  return take_number(line, value) ? std::optional(value) : std::nullopt;
+}
+
+/// Values of one column.
+struct CsvColumn {
+  std::string name;
+  bool is_id = false;
+  std::vector<double> values;
+  std::vector<std::uint64_t> ids;
+  std::string fault;
+};
+
 class CsvParser {
  public:
-  CsvParser(std::string_view bytes, const std::string& name) : lines_(bytes), bytes_(bytes), name_(name) {}
+  CsvParser(std::string_view bytes, const std::string& name) : name_(name), lines_(bytes) {}
 
   ParticleTable parse() {
+    find_names();
     std::string_view line;
-    read_names(line);
     while (lines_.next(line)) {
       if (!line.empty() && line.front() != '#') read_row(line);
     }
     ParticleTable table;
     table.format = "CSV";
     table.count = rows_;
-    for (std::size_t k = 0; k < names_.size(); ++k) {
-      if (!is_numeric_[k]) continue;
-      if (rows_ > 0 && plain_column_name(names_[k]) == "time") table.time = columns_[k].front();
-      if (!table.columns.emplace(names_[k], std::move(columns_[k])).second)
-        fail(names_line_, fmt::format("the column \"{}\" is there twice", names_[k]));
-    }
+    table.time = time_;
+    for (CsvColumn& column : columns_) add_column(table, column);
     return table;
   }
 
@@ -114,82 +154,96 @@ class CsvParser {
     throw InputError(fmt::format("{}, line {}: {}", name_, line, message));
   }
 
-  /// The first line that is neither empty nor a remark; a remark that looks like names counts where no names follow.
-  void read_names(std::string_view& line) {
-    std::string remark;
-    for (;;) {
-      if (!lines_.next(line))
-        throw InputError(name_ + ": there is no line of column names, such as x,y,z,vx,vy,vz,id; the file is empty");
-      if (line.empty()) continue;
-      if (line.front() != '#') break;
-      remark = std::string(line.substr(1));
+  /// The first line with names of positions, behind a # or not, within the first lines; where there is none, the first
+  /// line without numbers. What stands before is a preface.
+  void find_names() {
+    Lines lines = lines_;
+    std::string_view line;
+    for (std::size_t k = 0; k < longest_preface && lines.next(line); ++k) {
+      const std::string_view words = without_mark(line);
+      if (const auto time = time_in_line(line)) time_ = time;
+      if (words.empty() || !names_positions(cells_of(words, find_separator(words)))) continue;
+      take_names(words, lines.number());
+      lines_ = lines;
+      return;
     }
-    names_line_ = lines_.number();
-    split_names(line);
-    if (std::none_of(names_.begin(), names_.end(), [](const std::string& cell) { return is_number(cell); })) return;
-    const std::string first_row(line);
-    split_names(remark);
-    if (remark.empty() || std::any_of(names_.begin(), names_.end(), [](const std::string& n) { return is_number(n); }))
-      fail(names_line_, "expected column names, such as x,y,z,vx,vy,vz,id, but there are numbers");
-    read_row(first_row);
+    time_.reset();
+    for (lines = lines_; lines.next(line);) {
+      if (line.empty() || line.front() == '#') continue;
+      const std::vector<std::string> cells = cells_of(line, find_separator(line));
+      if (std::any_of(cells.begin(), cells.end(), [](const std::string& cell) { return is_number(cell); }))
+        fail(lines.number(), "expected column names, such as x,y,z,vx,vy,vz,id, but there are numbers");
+      take_names(line, lines.number());
+      lines_ = lines;
+      return;
+    }
+    throw InputError(name_ + ": there is no line of column names, such as x,y,z,vx,vy,vz,id; the file is empty");
   }
 
-  void split_names(std::string_view line) {
+  void take_names(std::string_view line, std::size_t number) {
+    names_line_ = number;
     separator_ = find_separator(line);
-    names_.clear();
-    Cells cells(line, separator_);
-    for (std::string_view cell; cells.next(cell);) names_.emplace_back(cell);
-    while (!names_.empty() && names_.back().empty()) names_.pop_back();  // a separator at the end of the line
-    if (names_.size() > most_columns) fail(names_line_, "there are more than 4096 columns; this is no particle table");
-    columns_.assign(names_.size(), {});
-    is_numeric_.assign(names_.size(), true);
+    const std::vector<std::string> names = cells_of(line, separator_);
+    if (names.size() > most_columns) fail(number, "there are more than 4096 columns; this is no particle table");
+    for (const std::string& name : names) columns_.push_back({name, is_id_name(name), {}, {}, {}});
   }
 
   void read_row(std::string_view line) {
     Cells cells(line, separator_);
     std::size_t k = 0;
-    for (std::string_view cell; k < names_.size() && cells.next(cell); ++k) {
-      if (!is_numeric_[k]) continue;
-      double value = 0;
-      std::string_view rest = cell;
-      if (!take_number(rest, value) || !rest.empty()) {
-        // Words in the first row: a column of names, which is nobody's business here.
-        if (rows_ == 0 && !cell.empty() && columns_[k].empty() && !is_needed(names_[k])) {
-          is_numeric_[k] = false;
-          continue;
-        }
-        fail(lines_.number(), fmt::format("expected a number as \"{}\", found \"{}\"{}", names_[k], cell.substr(0, 40),
-                                          comma_hint(cell)));
-      }
-      columns_[k].push_back(value);
-    }
+    for (std::string_view cell; k < columns_.size() && cells.next(cell); ++k) read_cell(columns_[k], cell);
     std::string_view surplus;
-    const bool too_long = cells.next(surplus) && (!surplus.empty() || cells.next(surplus));
-    if (k < names_.size() || too_long)
-      fail(lines_.number(), fmt::format("{} values where line {} has {} column names",
-                                        too_long ? "more" : std::to_string(k), names_line_, names_.size()) +
-                                (k < names_.size() ? "; the file may be truncated" : ""));
+    if (cells.next(surplus) && (!surplus.empty() || cells.next(surplus)))
+      fail(lines_.number(), fmt::format("more values where line {} has {} column names", names_line_, columns_.size()));
+    const std::size_t found = k;
+    if (k < columns_.size() && lines_.at_open_end())
+      fail(lines_.number(),
+           fmt::format("{} values where line {} has {} column names, and the file ends within this line: "
+                       "it is truncated",
+                       found, names_line_, columns_.size()));
+    for (; k < columns_.size(); ++k) {
+      columns_[k].values.push_back(std::nan(""));
+      columns_[k].ids.clear();
+      note(columns_[k], fmt::format("{} values where line {} has {} column names; the file may be truncated", found,
+                                    names_line_, columns_.size()));
+    }
     ++rows_;
   }
 
-  static bool is_needed(const std::string& name) {
-    const std::string plain = plain_column_name(name);
-    return plain == "x" || plain == "y" || plain == "z" || plain == "id";
+  void read_cell(CsvColumn& column, std::string_view cell) {
+    const auto value = separator_ == ',' ? number_of_word(cell) : number_with_comma(cell);
+    if (!value) {
+      const bool comma = cell.find(',') != std::string_view::npos;
+      note(column, fmt::format("expected a number as \"{}\", found \"{}\"{}", column.name, cell.substr(0, 40),
+                               comma ? "; numbers are written with a point, not a comma" : ""));
+    }
+    column.values.push_back(value ? *value : std::nan(""));
+    if (!column.is_id || column.ids.size() + 1 != column.values.size()) return;
+    if (const auto id = whole_number_of_word(cell)) column.ids.push_back(*id);
   }
 
-  static std::string comma_hint(std::string_view cell) {
-    const bool comma = cell.find(',') != std::string_view::npos;
-    return comma ? "; numbers are written with a point, not a comma" : "";
+  void note(CsvColumn& column, const std::string& what) const {
+    if (column.fault.empty()) column.fault = fmt::format("line {}: {}", lines_.number(), what);
   }
 
-  Lines lines_;
-  std::string_view bytes_;
+  void add_column(ParticleTable& table, CsvColumn& column) const {
+    if (column.name.empty()) return;
+    if (table.columns.contains(column.name))
+      return note_fault(table, column.name,
+                        fmt::format("line {}: the column \"{}\" is there twice", names_line_, column.name));
+    if (!column.fault.empty()) note_fault(table, column.name, column.fault);
+    if (rows_ > 0 && plain_column_name(column.name) == "time" && column.fault.empty())
+      table.time = column.values.front();
+    if (column.is_id && column.ids.size() == rows_) table.ids[column.name] = std::move(column.ids);
+    table.columns[column.name] = std::move(column.values);
+  }
+
   const std::string& name_;
+  Lines lines_;
   std::size_t names_line_ = 0, rows_ = 0;
   char separator_ = ',';
-  std::vector<std::string> names_;
-  std::vector<std::vector<double>> columns_;
-  std::vector<bool> is_numeric_;
+  std::vector<CsvColumn> columns_;
+  std::optional<double> time_;
 };
 
 }  // namespace

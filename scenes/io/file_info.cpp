@@ -108,8 +108,14 @@ void describe_particles(FileInfo& info, const std::string& name, const ParticleT
   if (table.time) info.lines.push_back(fmt::format("time: {:.6g} s", *table.time));
   if (state.positions.empty()) return;
   info.lines.push_back(bounds_line(state.positions));
-  if (const double spacing = estimated_spacing(state.positions); spacing > 0)
-    info.lines.push_back(fmt::format("spacing: about {:.4g} m (estimated from the distances of neighbours)", spacing));
+  if (const SpacingEstimate estimate = estimate_spacing(state.positions); estimate.spacing > 0) {
+    info.lines.push_back(fmt::format("spacing: about {:.4g} m (estimated: {}, to within some {:.0f} %)",
+                                     estimate.spacing, estimate.method, 100 * estimate.uncertainty));
+    if (estimate.coincident > 0)
+      info.lines.push_back(fmt::format("coincident: {} particles are in places that others have", estimate.coincident));
+    if (estimate.dimensions < 3)
+      info.lines.push_back(fmt::format("all in a {}", estimate.dimensions == 2 ? "plane (two dimensions)" : "line"));
+  }
   if (file.has_velocities)
     info.lines.push_back(range_line("speed", "m/s", state.velocities, [](const Vec3& v) { return v.norm(); }));
   if (std::any_of(state.densities.begin(), state.densities.end(), [](double d) { return d != 0; }))

@@ -9,13 +9,13 @@
 namespace flowskin::scenes {
 namespace {
 
-template <class T>
-void append_as(std::string_view bytes, bool swap, std::vector<double>& numbers) {
+template <class T, class Number>
+void append_as(std::string_view bytes, bool swap, std::vector<Number>& numbers) {
   for (std::size_t at = 0; at + sizeof(T) <= bytes.size(); at += sizeof(T)) {
     std::array<char, sizeof(T)> raw;
     std::memcpy(raw.data(), bytes.data() + at, sizeof(T));
     if (swap) std::reverse(raw.begin(), raw.end());
-    numbers.push_back(static_cast<double>(std::bit_cast<T>(raw)));
+    numbers.push_back(static_cast<Number>(std::bit_cast<T>(raw)));
   }
 }
 
@@ -63,6 +63,40 @@ void append_numbers(std::string_view bytes, NumberType type, bool big_endian, st
     case NumberType::float64:
       return append_as<double>(bytes, swap, numbers);
   }
+}
+
+std::vector<std::uint64_t> whole_numbers(std::string_view bytes, NumberType type, bool big_endian) {
+  const bool swap = big_endian != (std::endian::native == std::endian::big);
+  std::vector<std::uint64_t> numbers;
+  switch (type) {
+    case NumberType::int8:
+      append_as<std::int8_t>(bytes, swap, numbers);
+      break;
+    case NumberType::uint8:
+      append_as<std::uint8_t>(bytes, swap, numbers);
+      break;
+    case NumberType::int16:
+      append_as<std::int16_t>(bytes, swap, numbers);
+      break;
+    case NumberType::uint16:
+      append_as<std::uint16_t>(bytes, swap, numbers);
+      break;
+    case NumberType::int32:
+      append_as<std::int32_t>(bytes, swap, numbers);
+      break;
+    case NumberType::uint32:
+      append_as<std::uint32_t>(bytes, swap, numbers);
+      break;
+    case NumberType::int64:
+      append_as<std::int64_t>(bytes, swap, numbers);
+      break;
+    case NumberType::uint64:
+      append_as<std::uint64_t>(bytes, swap, numbers);
+      break;
+    default:
+      break;
+  }
+  return numbers;
 }
 
 }  // namespace flowskin::scenes

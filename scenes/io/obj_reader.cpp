@@ -36,7 +36,6 @@ void add_face(void* user, tinyobj::index_t* indices, int count) {
   ObjFaces& obj = *static_cast<ObjFaces*>(user);
   if (!obj.error.empty()) return;
   const std::string face = "face " + std::to_string(obj.faces.size() + 1);
-  if (count < 3) obj.error = face + " has fewer than 3 corners";
   if (count > largest_polygon)
     obj.error = face + " has " + std::to_string(count) + " corners, more than the " + std::to_string(largest_polygon) +
                 " allowed: cut it into triangles in the program that made the file";
@@ -75,6 +74,15 @@ void check_face_line(std::string_view line, const std::string& place) {
   }
 }
 
+/// A \ at the end of a line: it goes on in the next one.
+std::string with_joined_lines(std::string text) {
+  for (std::size_t at = text.find('\\'); at != std::string::npos; at = text.find('\\', at + 1)) {
+    const std::size_t end = text.find_first_not_of(" \t\r", at + 1);
+    if (end != std::string::npos && text[end] == '\n') std::fill(text.begin() + at, text.begin() + end + 1, ' ');
+  }
+  return text;
+}
+
 /// tinyobjloader takes what is no number for 0, and an index beyond int for anything: so lines are checked before.
 void check_lines(std::string_view text, const std::string& name) {
   for (int line_number = 1; !text.empty(); ++line_number) {
@@ -109,7 +117,8 @@ sph::TriangleMesh keep_referenced(const std::vector<Vec3>& positions, std::vecto
 
 sph::TriangleMesh read_obj(const std::filesystem::path& file) { return parse_obj(read_bytes(file), file.string()); }
 
-sph::TriangleMesh parse_obj(const std::string& text, const std::string& name) {
+sph::TriangleMesh parse_obj(const std::string& written, const std::string& name) {
+  const std::string text = with_joined_lines(written);
   if (text.find('\0') != std::string::npos) throw InputError(name + ": this is a binary file, no OBJ");
   check_lines(text, name);
 
@@ -132,6 +141,7 @@ sph::TriangleMesh parse_obj(const std::string& text, const std::string& name) {
       if (vertex >= vertex_count)
         throw InputError(name + ": face " + std::to_string(i + 1) + " refers to vertex " + std::to_string(vertex + 1) +
                          ", but there are only " + std::to_string(vertex_count));
+    if (obj.faces[i].size() < 3) continue;  // a line or a point
     for (const auto& triangle : triangulate_polygon(obj.positions, obj.faces[i]))
       if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
         triangles.push_back(triangle);

@@ -8,11 +8,15 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <iterator>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "common/errors.h"
+#include "scenes/io/number_words.h"
 #include "scenes/io/ply_reader.h"
+#include "scenes/io/row_filter.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -25,8 +29,15 @@ constexpr double largest_density = 1e30;
 
 using Column = std::vector<double>;
 using Names = std::initializer_list<const char*>;
-/// Columns by plain name.
-using Columns = std::map<std::string, const Column*>;
+
+/// A column that may be called in several ways.
+struct NamedColumn {
+  std::string written;  ///< its name in the file
+  const Column* values = nullptr;
+  std::string other;  ///< another column of the same plain name
+};
+/// By plain name.
+using Columns = std::map<std::string, NamedColumn>;
 
 const Names position_names = {"", "position", "positions", "pos", "points", "point", "p", "coordinates", "coords"};
 const Names velocity_names = {"v", "velocity", "velocities", "vel"};
@@ -35,48 +46,95 @@ const Names id_names = {"id", "ids", "particle_id", "particle_ids", "particleid"
 const Names radius_names = {"radius", "radii", "particle_radius", "pscale"};
 const Names density_names = {"density", "densities", "rho", "rhop"};
 
-/// @throws InputError where two columns have the same plain name.
-Columns columns_by_plain_name(const ParticleTable& table, const std::string& name) {
+/// Of two that differ in case or signs only, the one that is written plainly counts.
+Columns columns_by_plain_name(const ParticleTable& table) {
   Columns columns;
-  for (const auto& [written, column] : table.columns) {
-    if (!columns.emplace(plain_column_name(written), &column).second)
-      throw InputError(fmt::format("{}: two columns are called \"{}\" (but for signs, case and units)", name,
-                                   plain_column_name(written)));
+  for (const auto& [written, values] : table.columns) {
+    const std::string plain = plain_column_name(written);
+    const auto [place, is_new] = columns.try_emplace(plain, NamedColumn{written, &values, ""});
+    if (is_new) continue;
+    NamedColumn& column = place->second;
+    if (written == plain)
+      column = {written, &values, ""};
+    else if (column.written != plain)
+      column.other = written;
   }
   return columns;
 }
 
-/// The column of the first of these names that is there, or nullptr.
-const Column* find_column(const Columns& columns, Names names) {
-  for (const char* name : names)
-    if (const auto found = columns.find(name); found != columns.end()) return found->second;
-  return nullptr;
-}
+/// Finds what is needed in one table, and stops where that is at fault.
+class ColumnFinder {
+ public:
+  ColumnFinder(const ParticleTable& table, const std::string& name)
+      : table_(table), name_(name), columns_(columns_by_plain_name(table)) {}
 
-using Triple = std::array<const Column*, 3>;
+  /// The column of the first of these names that is there, or nullptr; unchecked.
+  const NamedColumn* find(Names names) const {
+    for (const char* name : names)
+      if (const auto found = columns_.find(name); found != columns_.end()) return &found->second;
+    return nullptr;
+  }
 
-/// Three columns such as vx vy vz, vel_x vel_y vel_z, velocity_0 velocity_1 velocity_2; null where they are not there.
-/// @throws InputError where only some of the three are there.
-Triple find_vector(const Columns& columns, Names names, const std::string& what, const std::string& name) {
-  for (const std::string base : names) {
-    for (const char* components : {"xyz", "012"}) {
-      for (const char* joint : {"", "_"}) {
-        if (base.empty() && (components[0] != 'x' || joint[0] != '\0')) continue;
-        Triple triple{};
-        for (std::size_t k = 0; k < 3; ++k) {
-          const auto found = columns.find(base + joint + components[k]);
-          if (found != columns.end()) triple[k] = found->second;
+  bool is_faulty(const NamedColumn& column) const {
+    return !column.other.empty() || table_.faults.contains(column.written);
+  }
+
+  /// @throws InputError where the column is at fault
+  void require(const NamedColumn& column) const {
+    if (!column.other.empty())
+      throw InputError(fmt::format("{}: two columns are called \"{}\" but for signs, case and units: \"{}\" and \"{}\"",
+                                   name_, plain_column_name(column.written), column.written, column.other));
+    if (const auto fault = table_.faults.find(column.written); fault != table_.faults.end())
+      throw InputError(fmt::format("{}, {}", name_, fault->second));
+  }
+
+  /// Three columns such as vx vy vz, vel_x vel_y vel_z, velocity_0 velocity_1 velocity_2; null where they are not
+  /// there.
+  /// @throws InputError where only some of the three are there, or one is at fault.
+  std::array<const Column*, 3> find_vector(Names names, const std::string& what) const {
+    for (const std::string base : names) {
+      for (const char* components : {"xyz", "012"}) {
+        for (const char* joint : {"", "_"}) {
+          if (base.empty() && (components[0] != 'x' || joint[0] != '\0')) continue;
+          const auto triple = find_triple(base + joint, components);
+          const auto present = std::count_if(triple.begin(), triple.end(), [](const auto* c) { return c != nullptr; });
+          if (present == 3) {
+            for (const NamedColumn* column : triple) require(*column);
+            return {triple[0]->values, triple[1]->values, triple[2]->values};
+          }
+          // A lone "p0" or "v_x" may be anything; of the plain names and of two in three it is a slip.
+          if (present == 2 || (present == 1 && joint[0] == '\0' && components[0] == 'x')) complain(triple, what);
         }
-        const auto present = std::count_if(triple.begin(), triple.end(), [](const Column* c) { return c != nullptr; });
-        if (present == 3) return triple;
-        // A lone "p0" or "v_x" may be anything; of the plain names and of two in three it is a slip.
-        if (present == 2 || (present == 1 && joint[0] == '\0' && components[0] == 'x'))
-          throw InputError(name + ": only some components of the " + what + " are there; x, y and z were expected");
       }
     }
+    return {};
   }
-  return {};
-}
+
+ private:
+  std::array<const NamedColumn*, 3> find_triple(const std::string& base, const char* components) const {
+    std::array<const NamedColumn*, 3> triple{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto found = columns_.find(base + components[k]);
+      if (found != columns_.end()) triple[k] = &found->second;
+    }
+    return triple;
+  }
+
+  [[noreturn]] void complain(const std::array<const NamedColumn*, 3>& triple, const std::string& what) const {
+    if (what == "position" && triple[0] != nullptr && triple[1] != nullptr)
+      throw InputError(fmt::format(
+          "{}: there are \"{}\" and \"{}\", but no third coordinate: these are data in two dimensions, and a surface "
+          "needs three. Repeat the particles in several layers, with z = 0, h, 2 h, ... 5 h, h being their spacing",
+          name_, triple[0]->written, triple[1]->written));
+    throw InputError(name_ + ": only some components of the " + what + " are there; x, y and z were expected");
+  }
+
+  const ParticleTable& table_;
+  const std::string& name_;
+  Columns columns_;
+};
+
+using Triple = std::array<const Column*, 3>;
 
 /// Three columns as vectors; `fallback` where they are not there.
 std::vector<Vec3> vectors(const Triple& columns, std::vector<Vec3> fallback, const std::string& what,
@@ -86,26 +144,32 @@ std::vector<Vec3> vectors(const Triple& columns, std::vector<Vec3> fallback, con
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i] = Vec3((*columns[0])[i], (*columns[1])[i], (*columns[2])[i]);
     if (!result[i].allFinite())
-      throw InputError(name + ", particle " + std::to_string(i + 1) + ": the " + what + " is not finite");
+      throw InputError(name + ", particle " + std::to_string(i + 1) + ": the " + what +
+                       " is not finite; --skip-invalid leaves such particles out");
     if (const double most = result[i].cwiseAbs().maxCoeff(); most > largest_value)
-      throw InputError(fmt::format("{}, particle {}: the {} has a component of {:.4g} {}, more than {:g}; is that so?",
-                                   name, i + 1, what, most, unit, largest_value));
+      throw InputError(
+          fmt::format("{}, particle {}: the {} has a component of {:.4g} {}, more than {:g}; is that so? --region and "
+                      "--skip-invalid leave such particles out",
+                      name, i + 1, what, most, unit, largest_value));
   }
   return result;
 }
 
-std::vector<std::uint64_t> particle_ids(const Column* column, std::size_t count, const std::string& name) {
-  std::vector<std::uint64_t> ids(count);
+/// @param column nullptr: the order in the file
+std::vector<std::uint64_t> particle_ids(const ParticleTable& table, const NamedColumn* column,
+                                        const std::string& name) {
+  std::vector<std::uint64_t> ids(table.count);
   if (column == nullptr) {
     std::iota(ids.begin(), ids.end(), std::uint64_t{0});
     return ids;
   }
-  constexpr double largest_exact = 9007199254740992.0;  // 2^53: beyond it doubles skip whole numbers
+  if (const auto exact = table.ids.find(column->written); exact != table.ids.end()) return exact->second;
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    const double value = (*column)[i];
-    if (!(value >= 0) || value != std::floor(value) || value > largest_exact)
-      throw InputError(name + ", particle " + std::to_string(i + 1) + ": its id is no whole number from 0 to 2^53");
-    ids[i] = static_cast<std::uint64_t>(value);
+    const auto id = whole_number_of((*column->values)[i]);
+    if (!id)
+      throw InputError(fmt::format("{}, particle {}: its id is no whole number (\"{}\"); --no-ids does without ids",
+                                   name, i + 1, column->written));
+    ids[i] = *id;
   }
   return ids;
 }
@@ -127,21 +191,34 @@ void sort_by_id(ParticleState& state, const std::string& name) {
   state.ids = reordered(state.ids, order);
   const auto twice = std::adjacent_find(state.ids.begin(), state.ids.end());
   if (twice != state.ids.end())
-    throw InputError(name + ": two particles have the id " + std::to_string(*twice) +
-                     ": every particle needs its own, the same in every file of a sequence");
+    throw InputError(
+        name + ": two particles have the id " + std::to_string(*twice) +
+        ": every particle needs its own, the same in every file of a sequence; --skip-duplicates keeps the first, "
+        "--no-ids does without ids");
   state.positions = reordered(state.positions, order);
   state.velocities = reordered(state.velocities, order);
   state.rest_positions = reordered(state.rest_positions, order);
   state.densities = reordered(state.densities, order);
 }
 
-/// 0 where the column is missing or says nothing.
-double median_radius(const Column* column) {
-  if (column == nullptr || column->empty()) return 0;
-  Column radii = *column;
+/// Median of those that are finite and positive; 0 where there are none.
+double median_radius(const NamedColumn* column) {
+  Column radii;
+  if (column != nullptr)
+    std::copy_if(column->values->begin(), column->values->end(), std::back_inserter(radii),
+                 [](double radius) { return std::isfinite(radius) && radius > 0; });
+  if (radii.empty()) return 0;
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
-  return std::isfinite(*middle) && *middle > 0 ? *middle : 0;
+  return *middle;
+}
+
+/// Of all particles, or 0 for all: nothing depends on them but what is written.
+Column usable_densities(const NamedColumn* column, bool is_faulty, std::size_t count) {
+  const bool usable = column != nullptr && !is_faulty &&
+                      std::all_of(column->values->begin(), column->values->end(),
+                                  [](double density) { return std::abs(density) <= largest_density; });
+  return usable ? *column->values : Column(count, 0.0);
 }
 
 }  // namespace
@@ -173,9 +250,103 @@ std::string plain_column_name(const std::string& name) {
   return plain;
 }
 
-ParticleFile particles_from_table(const ParticleTable& table, const std::string& name) {
-  const Columns columns = columns_by_plain_name(table, name);
-  const Triple place = find_vector(columns, position_names, "position", name);
+bool is_id_name(const std::string& name) {
+  const std::string plain = plain_column_name(name);
+  return std::any_of(id_names.begin(), id_names.end(), [&](const char* id) { return plain == id; });
+}
+
+bool names_positions(const std::vector<std::string>& names) {
+  std::set<std::string> plain;
+  for (const std::string& name : names) plain.insert(plain_column_name(name));
+  return std::any_of(position_names.begin(), position_names.end(), [&](const std::string base) {
+    for (const char* joint : {"", "_"}) {
+      if (plain.contains(base + joint + "x") && plain.contains(base + joint + "y") && (!base.empty() || *joint == '\0'))
+        return true;
+      if (!base.empty() && plain.contains(base + joint + "0") && plain.contains(base + joint + "1")) return true;
+    }
+    return false;
+  });
+}
+
+namespace {
+
+bool has_selection(const ParticleNeeds& needs) {
+  return !needs.keep.empty() || needs.region || needs.skip_invalid || needs.skip_duplicates;
+}
+
+/// The rows that are left of `table`; `count` grows by those that are not.
+ParticleTable without_rows(const ParticleTable& table, const std::vector<char>& wanted, std::uint64_t& count) {
+  const ParticleTable rows = rows_of(table, wanted);
+  count += table.count - rows.count;
+  return rows;
+}
+
+/// Which particles have finite values within bounds in all columns that are needed.
+std::vector<char> valid_rows(const ParticleTable& table, const std::string& name, const ParticleNeeds& needs) {
+  const ColumnFinder columns(table, name);
+  std::vector<char> valid(table.count, 1);
+  for (const auto& [names, what] : {std::pair(position_names, "position"), std::pair(velocity_names, "velocity"),
+                                    std::pair(rest_names, "rest position")})
+    for (const Column* column : columns.find_vector(names, what))
+      for (std::size_t i = 0; column != nullptr && i < valid.size(); ++i)
+        valid[i] = valid[i] && std::abs((*column)[i]) <= largest_value;
+  const NamedColumn* ids = needs.ids ? columns.find(id_names) : nullptr;
+  if (ids != nullptr && !table.ids.contains(ids->written))
+    for (std::size_t i = 0; i < valid.size(); ++i)
+      valid[i] = valid[i] && whole_number_of((*ids->values)[i]).has_value();
+  return valid;
+}
+
+std::vector<char> rows_in(const sph::Box& region, const ParticleTable& table, const std::string& name) {
+  const Triple place = ColumnFinder(table, name).find_vector(position_names, "position");
+  std::vector<char> inside(table.count, 1);
+  for (Eigen::Index k = 0; k < 3 && place[0] != nullptr; ++k)
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      const double x = (*place[static_cast<std::size_t>(k)])[i];
+      // What is no number is not outside: it is an error, or left out as invalid.
+      inside[i] = inside[i] && !(x < region.min[k] || x > region.max[k]);
+    }
+  return inside;
+}
+
+/// The first of each id and of each place.
+std::vector<char> first_rows(const ParticleTable& table, const std::string& name, const ParticleNeeds& needs) {
+  const ColumnFinder columns(table, name);
+  const Triple place = columns.find_vector(position_names, "position");
+  const NamedColumn* id = needs.ids ? columns.find(id_names) : nullptr;
+  const std::vector<std::uint64_t> ids = particle_ids(table, id, name);
+  std::set<std::uint64_t> seen_ids;
+  std::set<std::array<double, 3>> seen_places;
+  std::vector<char> first(table.count, 1);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (!seen_ids.insert(ids[i]).second) first[i] = 0;
+    if (place[0] == nullptr) continue;
+    const std::array<double, 3> x{(*place[0])[i], (*place[1])[i], (*place[2])[i]};
+    if (std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]) && !seen_places.insert(x).second)
+      first[i] = 0;
+  }
+  return first;
+}
+
+ParticleTable selected(const ParticleTable& all, const std::string& name, const ParticleNeeds& needs,
+                       LeftOut& left_out) {
+  ParticleTable table = all;
+  if (needs.skip_invalid) table.faults.clear();  // what is at fault there is NaN
+  if (!needs.keep.empty()) table = without_rows(table, rows_that(needs.keep, all, name), left_out.unwanted);
+  if (needs.region) table = without_rows(table, rows_in(*needs.region, table, name), left_out.unwanted);
+  if (needs.skip_invalid) table = without_rows(table, valid_rows(table, name, needs), left_out.invalid);
+  if (needs.skip_duplicates) table = without_rows(table, first_rows(table, name, needs), left_out.duplicate);
+  return table;
+}
+
+}  // namespace
+
+ParticleFile particles_from_table(const ParticleTable& all, const std::string& name, const ParticleNeeds& needs) {
+  LeftOut left_out;
+  const ParticleTable some = has_selection(needs) ? selected(all, name, needs, left_out) : ParticleTable();
+  const ParticleTable& table = has_selection(needs) ? some : all;
+  const ColumnFinder columns(table, name);
+  const Triple place = columns.find_vector(position_names, "position");
   if (place[0] == nullptr) {
     std::vector<std::string> names;
     for (const auto& column : table.columns) names.push_back(column.first);
@@ -183,30 +354,25 @@ ParticleFile particles_from_table(const ParticleTable& table, const std::string&
         fmt::format("{}: particles need the columns x, y and z; {}", name,
                     names.empty() ? "there are none" : fmt::format("there are: {}", fmt::join(names, ", "))));
   }
-  const Triple velocity = find_vector(columns, velocity_names, "velocity", name);
-  const Triple rest = find_vector(columns, rest_names, "rest position", name);
-  const Column* ids = find_column(columns, id_names);
-  const Column* densities = find_column(columns, density_names);
+  const Triple velocity = columns.find_vector(velocity_names, "velocity");
+  const Triple rest = columns.find_vector(rest_names, "rest position");
+  const NamedColumn* ids = needs.ids ? columns.find(id_names) : nullptr;
+  if (ids != nullptr) columns.require(*ids);
+  const NamedColumn* densities = columns.find(density_names);
 
   ParticleFile file;
+  file.left_out = left_out;
   file.has_ids = ids != nullptr;
   file.has_velocities = velocity[0] != nullptr;
   file.has_rest_positions = rest[0] != nullptr;
-  file.radius = median_radius(find_column(columns, radius_names));
+  file.radius = median_radius(columns.find(radius_names));
   if (file.radius == 0) file.radius = table.radius;
   ParticleState& state = file.state;
-  state.ids = particle_ids(ids, table.count, name);
+  state.ids = particle_ids(table, ids, name);
   state.positions = vectors(place, {}, "position", "m", name);
   state.velocities = vectors(velocity, std::vector<Vec3>(table.count, Vec3::Zero()), "velocity", "m/s", name);
   state.rest_positions = vectors(rest, state.positions, "rest position", "m", name);
-  state.densities = densities != nullptr ? *densities : Column(table.count, 0.0);
-  for (std::size_t i = 0; i < state.densities.size(); ++i) {
-    if (!std::isfinite(state.densities[i]))
-      throw InputError(name + ", particle " + std::to_string(i + 1) + ": the density is not finite");
-    if (!(std::abs(state.densities[i]) <= largest_density))
-      throw InputError(fmt::format("{}, particle {}: the density is {:.4g}; expected a number up to {:g}", name, i + 1,
-                                   state.densities[i], largest_density));
-  }
+  state.densities = usable_densities(densities, densities != nullptr && columns.is_faulty(*densities), table.count);
   if (file.has_ids) sort_by_id(state, name);
   return file;
 }

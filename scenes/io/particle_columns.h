@@ -1,6 +1,8 @@
 // Particles from named columns, whoever wrote them.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,11 @@
 
 namespace flowskin::scenes {
 
+/// Particles that were left out as ParticleNeeds asks.
+struct LeftOut {
+  std::uint64_t unwanted = 0, invalid = 0, duplicate = 0;
+};
+
 /// Particles and what the file told about them.
 struct ParticleFile {
   ParticleState state;          ///< In order of ascending id; what is not there is made up for as the flags below say.
@@ -16,15 +23,31 @@ struct ParticleFile {
   bool has_velocities = false;  ///< else: zero
   bool has_rest_positions = false;  ///< else: the positions
   double radius = 0;                ///< Median of the particles' radii (m); 0: the file has none.
+  LeftOut left_out;
 };
 
 /// A column's name as it is compared: small letters, units in brackets left out, all other signs as one underscore:
 /// "Points:0" and "points_0", "Vel.x [m/s]" and "vel_x" are the same.
 std::string plain_column_name(const std::string& name);
 
+/// Whether a column of this name holds ids.
+bool is_id_name(const std::string& name);
+/// Whether columns of these names hold positions, in two dimensions at least.
+bool names_positions(const std::vector<std::string>& names);
+
+/// What is asked of a file.
+struct ParticleNeeds {
+  bool ids = true;     ///< false: ids are not looked at
+  std::string keep{};  ///< An expression of columns (row_filter.h) that wanted particles fulfil; empty: all.
+  std::optional<sph::Box> region{};  ///< Only particles in it (m).
+  bool skip_invalid = false;     ///< Leave out particles with values that are no finite numbers, instead of an error.
+  bool skip_duplicates = false;  ///< Leave out particles whose id or place an earlier one has.
+};
+
 /// docs/track.md lists the names that are understood.
 /// @param name stands for the file in messages
-/// @throws InputError where positions are missing, a value is not finite, or an id is no whole number or there twice.
-ParticleFile particles_from_table(const ParticleTable& table, const std::string& name);
+/// @throws InputError where positions are missing, a value that is needed is missing or not finite, or an id is no
+/// whole number or there twice. Columns that nobody needs may hold anything.
+ParticleFile particles_from_table(const ParticleTable& table, const std::string& name, const ParticleNeeds& needs = {});
 
 }  // namespace flowskin::scenes

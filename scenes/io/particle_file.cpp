@@ -11,6 +11,7 @@
 #include "scenes/io/csv_reader.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/io/read_bytes.h"
+#include "scenes/io/utf16.h"
 #include "scenes/io/vtk_reader.h"
 #include "scenes/io/vtp_reader.h"
 
@@ -30,6 +31,7 @@ bool is_particle_extension(std::string extension) {
 std::string particle_extensions() { return fmt::format("{}", fmt::join(extensions, ", ")); }
 
 ParticleTable parse_particle_table(std::string_view bytes, const std::string& name) {
+  if (is_utf16(bytes)) return parse_particle_table(utf8_of_utf16(bytes), name);
   if (bytes.empty()) throw InputError(name + ": the file is empty");
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return table_from_ply(parse_ply(bytes, name));
   if (bytes.starts_with("# vtk DataFile")) return parse_vtk(bytes, name);
@@ -48,13 +50,13 @@ ParticleTable read_particle_table(const std::filesystem::path& file) {
   return parse_particle_table(read_bytes(file), file.string());
 }
 
-ParticleFile read_particles(const std::filesystem::path& file) {
+ParticleFile read_particles(const std::filesystem::path& file, const ParticleNeeds& needs) {
   const ParticleTable table = read_particle_table(file);
   if (table.polygons > 0)
     throw InputError(
         fmt::format("{}: this is a mesh with {} polygons, not particles; give the particles it was made of",
                     file.string(), table.polygons));
-  ParticleFile particles = particles_from_table(table, file.string());
+  ParticleFile particles = particles_from_table(table, file.string(), needs);
   if (table.time) particles.state.time = *table.time;
   return particles;
 }

@@ -22,6 +22,6 @@ ParticleTable parse_particle_table(std::string_view bytes, const std::string& na
 ParticleTable read_particle_table(const std::filesystem::path& file);
 
 /// The particles of a file. @throws InputError, also where the file holds a mesh.
-ParticleFile read_particles(const std::filesystem::path& file);
+ParticleFile read_particles(const std::filesystem::path& file, const ParticleNeeds& needs = {});
 
 }  // namespace flowskin::scenes

@@ -16,9 +16,18 @@ struct ParticleTable {
   /// By the name in the file, each with `count` entries. Components of a vector are name_0, name_1, ...; positions of
   /// formats that do not name them are x, y, z.
   std::map<std::string, std::vector<double>> columns;
+  /// Exact values of columns that are called ids (is_id_name), as the bits of 64-bit numbers; where all are whole.
+  std::map<std::string, std::vector<std::uint64_t>> ids;
+  /// What is wrong with a column, and where; the values in question are NaN. It only stops who needs the column.
+  std::map<std::string, std::string> faults;
   std::optional<double> time;  ///< s
   double radius = 0;           ///< Of all particles (m); 0 where the file does not say.
   std::size_t polygons = 0;    ///< Faces of a mesh: then these are no particles.
 };
+
+/// Where the faults of a column begin is what counts.
+inline void note_fault(ParticleTable& table, const std::string& column, const std::string& what) {
+  table.faults.emplace(column, what);
+}
 
 }  // namespace flowskin::scenes

@@ -125,8 +125,6 @@ class HeaderParser {
     property.type = parse_type(type);
     property.name = take_word(line);
     if (property.name.empty()) fail("a property without a name");
-    for (const PlyProperty& other : header_.elements.back().properties)
-      if (other.name == property.name) fail("a second property \"" + property.name + "\"");
     header_.elements.back().properties.push_back(std::move(property));
   }
 

@@ -1,5 +1,7 @@
 #include "scenes/io/ply_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -10,6 +12,8 @@
 
 #include "common/errors.h"
 #include "common/number_text.h"
+#include "scenes/io/number_words.h"
+#include "scenes/io/particle_columns.h"
 #include "scenes/io/ply_header.h"
 #include "scenes/io/read_bytes.h"
 
@@ -57,6 +61,9 @@ class BinaryCursor {
     data_.remove_prefix(count * size_of(type));
   }
 
+  /// The next value, which is a whole number of 8 bytes, as its bits.
+  std::uint64_t next_whole() { return take<std::uint64_t>(); }
+
   /// How many elements of this kind could follow at most: what keeps an absurd count from allocating memory.
   std::uint64_t room_for(const PlyElement& element) const {
     std::size_t size = 0;
@@ -89,12 +96,18 @@ class AsciiCursor {
     skip_space(data_);
     if (data_.empty()) throw DataError{"the file ends here: it is truncated"};
     double value = 0;
-    std::string_view rest = data_;
-    if (!take_number(rest, value) ||
-        (!rest.empty() && std::string_view(" \t\r\n").find(rest[0]) == std::string_view::npos))
+    if (!take_number_word(data_, value))
       throw DataError{"expected a number, found \"" + std::string(take_word(data_).substr(0, 40)) + "\""};
-    data_ = rest;
     return value;
+  }
+
+  std::uint64_t next_whole() {
+    skip_space(data_);
+    if (data_.empty()) throw DataError{"the file ends here: it is truncated"};
+    const std::string_view word = take_word(data_);
+    const auto value = whole_number_of_word(word);
+    if (!value) throw DataError{"expected a whole number, found \"" + std::string(word.substr(0, 40)) + "\""};
+    return *value;
   }
 
   void skip(PlyType type, std::size_t count) {
@@ -155,17 +168,30 @@ class PlyDataReader {
       throw DataError{"more vertices than can be counted"};
     ply_.vertex_count = static_cast<std::size_t>(element.count);
     std::vector<std::vector<double>*> columns;
+    std::vector<std::vector<std::uint64_t>*> ids;
     for (const PlyProperty& property : element.properties) {
-      columns.push_back(property.is_list ? nullptr : &ply_.vertex[property.name]);
+      const bool is_new = !property.is_list && !ply_.vertex.contains(property.name);
+      if (!property.is_list && !is_new) ply_.repeated.insert(property.name);
+      const bool is_wide = property.type == PlyType::int64 || property.type == PlyType::uint64;
+      columns.push_back(is_new ? &ply_.vertex[property.name] : nullptr);
+      ids.push_back(is_new && is_wide && is_id_name(property.name) ? &ply_.ids[property.name] : nullptr);
       if (columns.back() != nullptr) columns.back()->resize(ply_.vertex_count);
+      if (ids.back() != nullptr) ids.back()->resize(ply_.vertex_count);
     }
     for (; item < element.count; ++item)
       for (std::size_t k = 0; k < columns.size(); ++k) {
         const PlyProperty& property = element.properties[k];
-        if (columns[k] == nullptr)
+        if (property.is_list) {
           cursor_.skip(property.type, take_list_length(cursor_, property));
-        else
-          (*columns[k])[item] = cursor_.next(property.type);
+        } else if (ids[k] != nullptr) {
+          (*ids[k])[item] = cursor_.next_whole();
+          (*columns[k])[item] = property.type == PlyType::int64
+                                    ? static_cast<double>(static_cast<std::int64_t>((*ids[k])[item]))
+                                    : static_cast<double>((*ids[k])[item]);
+        } else {
+          const double value = cursor_.next(property.type);
+          if (columns[k] != nullptr) (*columns[k])[item] = value;
+        }
       }
   }
 
@@ -193,7 +219,7 @@ class PlyDataReader {
   }
 
   void read_polygon(const PlyProperty& property, std::size_t length) {
-    if (length < 3) throw DataError{"a face with fewer than 3 corners"};
+    if (length < 3) return cursor_.skip(property.type, length);  // a point or a line, as some programs write
     int first = 0, previous = 0;
     for (std::size_t k = 0; k < length; ++k) {
       const double value = cursor_.next(property.type);
@@ -246,6 +272,9 @@ ParticleTable table_from_ply(const PlyFile& ply) {
   table.format = "PLY";
   table.count = ply.vertex_count;
   table.columns = ply.vertex;
+  table.ids = ply.ids;
+  for (const std::string& name : ply.repeated)
+    note_fault(table, name, fmt::format("header: the property \"{}\" is there twice", name));
   table.polygons = ply.triangles.size();
   for (const std::string& comment : ply.comments) {
     std::string_view rest = comment;

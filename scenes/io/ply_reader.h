@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +18,9 @@ namespace flowskin::scenes {
 /// The vertex element as columns of numbers by property name, the faces as triangles (polygons are split as fans).
 struct PlyFile {
   std::size_t vertex_count = 0;
-  std::map<std::string, std::vector<double>> vertex;  ///< each with vertex_count entries
+  std::map<std::string, std::vector<double>> vertex;      ///< each with vertex_count entries
+  std::map<std::string, std::vector<std::uint64_t>> ids;  ///< exact values of 64-bit ids, as their bits
+  std::set<std::string> repeated;                         ///< properties named twice; the first counts
   std::vector<std::array<int, 3>> triangles;
   std::map<std::string, std::vector<double>> face_lists;  ///< other lists of the faces, each as one row of numbers
   std::vector<std::string> comments;

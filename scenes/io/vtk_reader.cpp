@@ -12,11 +12,13 @@
 #include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/number_type.h"
+#include "scenes/io/number_words.h"
+#include "scenes/io/particle_columns.h"
 
 namespace flowskin::scenes {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, NumberType>, 14> vtk_types{{{"char", NumberType::int8},
+constexpr std::array<std::pair<std::string_view, NumberType>, 23> vtk_types{{{"char", NumberType::int8},
                                                                              {"signed_char", NumberType::int8},
                                                                              {"unsigned_char", NumberType::uint8},
                                                                              {"short", NumberType::int16},
@@ -25,6 +27,15 @@ constexpr std::array<std::pair<std::string_view, NumberType>, 14> vtk_types{{{"c
                                                                              {"unsigned_int", NumberType::uint32},
                                                                              {"long", NumberType::int64},
                                                                              {"unsigned_long", NumberType::uint64},
+                                                                             {"long_long", NumberType::int64},
+                                                                             {"unsigned_long_long", NumberType::uint64},
+                                                                             {"__int64", NumberType::int64},
+                                                                             {"vtktypeint8", NumberType::int8},
+                                                                             {"vtktypeuint8", NumberType::uint8},
+                                                                             {"vtktypeint16", NumberType::int16},
+                                                                             {"vtktypeuint16", NumberType::uint16},
+                                                                             {"vtktypeint32", NumberType::int32},
+                                                                             {"vtktypeuint32", NumberType::uint32},
                                                                              {"vtktypeint64", NumberType::int64},
                                                                              {"vtktypeuint64", NumberType::uint64},
                                                                              {"vtkidtype", NumberType::int32},
@@ -124,6 +135,37 @@ class VtkParser {
     binary_ = mode == "binary";
   }
 
+  /// Arrays of words and bits, which no particle needs, are stepped over: true where it was one.
+  bool skip_other_array(std::string_view line, std::uint64_t count) {
+    const std::string word = lower(take_word(line));
+    if (word == "bit") {
+      if (binary_)
+        take_bytes(count / 8 + (count % 8 != 0), 1, "bits");
+      else
+        take_numbers(count, 1, NumberType::uint8, "bits");
+      return true;
+    }
+    if (word != "string" && word != "utf8_string" && word != "variant") return false;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      if (at_ >= bytes_.size()) fail("the file ends within an array of words: it is truncated");
+      if (binary_)
+        skip_binary_string();
+      else
+        take_line();
+    }
+    return true;
+  }
+
+  /// Its length in 1, 2, 4 or 8 bytes: the two highest bits tell in how many.
+  void skip_binary_string() {
+    const auto first = static_cast<unsigned char>(bytes_[at_]);
+    const std::size_t width = std::size_t{1} << (3 - (first >> 6));
+    const std::string_view head = take_bytes(width, 1, "a word's length");
+    std::uint64_t length = first & 0x3f;
+    for (std::size_t k = 1; k < width; ++k) length = length << 8 | static_cast<unsigned char>(head[k]);
+    take_bytes(length, 1, "a word");
+  }
+
   /// One keyword with what belongs to it.
   void read_section() {
     const std::size_t start = at_;
@@ -208,6 +250,9 @@ class VtkParser {
       const std::string array(take_word(head));
       const std::uint64_t components = take_count(head, "the number of components");
       const std::uint64_t tuples = take_count(head, "the number of tuples");
+      if (components > most_components)
+        fail(fmt::format("\"{}\" has {} components, more than any attribute", array, components));
+      if (skip_other_array(head, components * std::min(tuples, std::uint64_t{1} << 50))) continue;
       read_array(array, components, tuples, take_type(head));
     }
   }
@@ -215,17 +260,42 @@ class VtkParser {
   void read_array(const std::string& array, std::uint64_t components, std::uint64_t tuples, NumberType type) {
     if (components > most_components)
       fail(fmt::format("\"{}\" has {} components, more than any attribute", array, components));
+    const std::size_t start = at_;
     const std::vector<double> numbers = take_numbers(tuples, components, type, "\"" + array + "\"");
     const std::string plain = lower(array);
     if (!in_attributes_ && (plain == "time" || plain == "timevalue") && !numbers.empty()) table_.time = numbers.front();
     if (!in_attributes_ || !in_points_) return;
     if (tuples != table_.count) fail(fmt::format("\"{}\" has {} values for {} points", array, tuples, table_.count));
-    store(decoded_name(array), components, numbers);
+    const std::string name = decoded_name(array);
+    if (components == 1 && is_id_name(name) && !table_.columns.contains(name)) store_ids(name, type, start);
+    store(name, components, numbers);
+  }
+
+  /// Exactly, from the bytes between `start` and here.
+  void store_ids(const std::string& name, NumberType type, std::size_t start) {
+    const std::string_view bytes = bytes_.substr(start, at_ - start);
+    std::vector<std::uint64_t> ids;
+    if (binary_) {
+      ids = whole_numbers(bytes, type, true);
+    } else {
+      std::string_view rest = bytes;
+      for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
+        const auto id = whole_number_of_word(word);
+        if (!id) return;
+        ids.push_back(*id);
+      }
+    }
+    if (ids.size() == table_.count) table_.ids[name] = std::move(ids);
   }
 
   void read_attribute(const std::string& keyword, std::string_view line, std::size_t start) {
     const std::string array(take_word(line));
     if (keyword == "scalars") {
+      if (lower(line).find(" bit") != std::string::npos) {
+        skip_lookup_table();
+        skip_other_array(line, tuples_);
+        return;
+      }
       const NumberType type = take_type(line);
       skip_space(line);
       const std::uint64_t components = line.empty() ? 1 : take_count(line, "the number of components");
@@ -298,7 +368,7 @@ class VtkParser {
     for (std::uint64_t i = 0; i < count; ++i) {
       double value = 0;
       skip_space(rest);
-      const bool found = take_number(rest, value);
+      const bool found = take_number_word(rest, value);
       at_ = bytes_.size() - rest.size();
       if (!found)
         fail(fmt::format("expected number {} of {} of {}, found \"{}\"", i + 1, count, what,

@@ -12,6 +12,8 @@
 #include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/number_type.h"
+#include "scenes/io/number_words.h"
+#include "scenes/io/particle_columns.h"
 #include "scenes/io/vtk_data.h"
 #include "scenes/io/xml_scanner.h"
 
@@ -47,7 +49,7 @@ struct Array {
 class VtpParser {
  public:
   VtpParser(std::string_view bytes, const std::string& name)
-      : head_(split_off_appended_data(bytes, name)), scanner_(head_, name) {}
+      : name_(name), head_(split_off_appended_data(bytes, name)), scanner_(head_, name) {}
 
   ParticleTable parse() {
     XmlTag tag;
@@ -182,12 +184,37 @@ class VtpParser {
       if (points.components != 3) scanner_.fail(tag.start, "points need 3 components");
       add_columns(points, {"x", "y", "z"});
     } else if (inside("PointData")) {
-      const Array array = described(tag);
-      std::vector<std::string> columns;
-      for (std::uint64_t k = 0; k < array.components; ++k)
-        columns.push_back(array.components == 1 ? array.name : array.name + "_" + std::to_string(k));
-      add_columns(array, columns);
+      read_attribute(tag);
     }
+  }
+
+  /// What is wrong with an attribute only stops who needs it.
+  void read_attribute(const XmlTag& tag) {
+    Array array;
+    try {
+      array = described(tag);
+    } catch (const InputError& error) {
+      const std::string* name = tag.find("Name");
+      if (name != nullptr) note_fault(table_, *name, without_file(error.what()));
+      return;
+    }
+    std::vector<std::string> columns;
+    for (std::uint64_t k = 0; k < array.components; ++k)
+      columns.push_back(array.components == 1 ? array.name : array.name + "_" + std::to_string(k));
+    try {
+      if (array.components == 1 && is_id_name(array.name)) add_ids(array);
+      add_columns(array, columns);
+    } catch (const InputError& error) {
+      for (const std::string& column : columns) {
+        note_fault(table_, column, without_file(error.what()));
+        table_.columns[column].resize(table_.count, std::nan(""));
+      }
+    }
+  }
+
+  /// Faults are told with the name of the file in front.
+  std::string without_file(const std::string& message) const {
+    return message.starts_with(name_ + ", ") ? message.substr(name_.size() + 2) : message;
   }
 
   void add_columns(const Array& array, const std::vector<std::string>& columns) {
@@ -213,12 +240,21 @@ class VtpParser {
       for (std::uint64_t i = 0; i < count; ++i) {
         double value = 0;
         skip_space(rest);
-        if (!take_number(rest, value))
+        if (!take_number_word(rest, value))
           fail(fmt::format("expected number {} of {}, found \"{}\"", i + 1, count, take_word(rest).substr(0, 40)));
         numbers.push_back(value);
       }
       return numbers;
     }
+    append_numbers(bytes_of(array, count), array.type, encoding_.big_endian, numbers);
+    return numbers;
+  }
+
+  /// The bytes of an array that is not written as text.
+  std::string bytes_of(const Array& array, std::uint64_t count) {
+    const auto fail = [&](const std::string& message) {
+      scanner_.fail(array.start, fmt::format("the array \"{}\": {}", array.name, message));
+    };
     std::string_view data = array.text;
     bool base64 = true;
     if (array.format == "appended") {
@@ -230,22 +266,45 @@ class VtpParser {
       fail(fmt::format("format \"{}\": expected ascii, binary or appended", array.format.substr(0, 40)));
     }
     try {
-      append_numbers(vtk_array_bytes(data, base64, encoding_, static_cast<std::size_t>(count * size_of(array.type))),
-                     array.type, encoding_.big_endian, numbers);
+      return vtk_array_bytes(data, base64, encoding_, static_cast<std::size_t>(count * size_of(array.type)));
     } catch (const VtkDataError& error) {
       fail(error.what());
     }
-    return numbers;
+    return {};
   }
 
-  /// An array that only some pieces have is of no use.
+  /// Exact values of ids of this piece, where they are whole numbers.
+  void add_ids(const Array& array) {
+    std::vector<std::uint64_t>& ids = table_.ids[array.name];
+    if (ids.size() + piece_points_ != table_.count || piece_points_ == 0) return;
+    if (array.format != "ascii") {
+      const std::vector<std::uint64_t> more =
+          whole_numbers(bytes_of(array, piece_points_), array.type, encoding_.big_endian);
+      ids.insert(ids.end(), more.begin(), more.end());
+      return;
+    }
+    std::string_view rest = array.text;
+    for (std::uint64_t i = 0; i < piece_points_; ++i) {
+      const auto id = whole_number_of_word(take_word(rest));
+      if (!id) return;
+      ids.push_back(*id);
+    }
+  }
+
+  /// An array that only some pieces have is of no use to anyone.
   void check_columns() {
     for (const char* axis : {"x", "y", "z"})
       if (table_.columns[axis].size() != table_.count)
         scanner_.fail(head_.size(), "a <Piece> without <Points>: the file is truncated or damaged");
-    std::erase_if(table_.columns, [this](const auto& column) { return column.second.size() != table_.count; });
+    for (auto& [name, values] : table_.columns) {
+      if (values.size() == table_.count) continue;
+      note_fault(table_, name, fmt::format("the array \"{}\" is not in every <Piece>", name));
+      values.resize(table_.count, std::nan(""));
+    }
+    std::erase_if(table_.ids, [this](const auto& ids) { return ids.second.size() != table_.count; });
   }
 
+  const std::string& name_;
   std::string_view appended_;
   bool has_appended_ = false, appended_base64_ = false;
   std::string_view head_;

@@ -73,10 +73,30 @@ void add_recorded_keys(KeyTable& table, Scene& scene) {
               "Time between files; 0: the times in the files, else 1/30 s.")
       .only_for(recorded);
   table
+      .boolean("particles.recorded.times_in_names", files.times_in_names,
+               "The numbers in the files' names are their times (s); frame_interval counts before them.")
+      .only_for(recorded);
+  table
       .choice<Ids>("particles.recorded.ids", files.ids,
                    {{"automatic", Ids::automatic}, {"order", Ids::order}, {"none", Ids::none}},
                    "Which particle is which from file to file: automatic takes the ids in the files or, where there "
                    "are none, their order if it seems to last.")
+      .only_for(recorded);
+  table
+      .text("particles.recorded.keep", files.keep,
+            "Only particles whose columns fulfil this, such as \"Type == 1 and z > 0.5\"; empty: all.")
+      .only_for(recorded);
+  table
+      .points("particles.recorded.region", files.region, "m",
+              "Only particles between these two corners, the lower one first; empty: all.")
+      .only_for(recorded);
+  table
+      .boolean("particles.recorded.skip_invalid", files.skip_invalid,
+               "Leave out particles with values that are missing or not finite, instead of an error.")
+      .only_for(recorded);
+  table
+      .boolean("particles.recorded.skip_duplicates", files.skip_duplicates,
+               "Leave out particles whose id or place an earlier one of the same file has, instead of an error.")
       .only_for(recorded);
 }
 

@@ -8,16 +8,15 @@
 #include <string_view>
 
 #include "common/errors.h"
+#include "common/number_text.h"
 #include "scenes/io/particle_file.h"
 #include "scenes/nearest_name.h"
+#include "scenes/sources/name_order.h"
 
 namespace flowskin::scenes {
 namespace {
 
 using Paths = std::vector<std::filesystem::path>;
-
-/// Numbers with more gaps than this are no frame numbers: then files follow each other at once.
-constexpr std::uint64_t most_steps_per_file = 4;
 
 /// Of a file, in bytes.
 constexpr std::size_t longest_name = 255;
@@ -82,137 +81,185 @@ bool fits(std::string_view name, const std::vector<PatternPart>& parts) {
   return next.back() != 0;
 }
 
-/// A name as text and runs of digits in turn, text first; runs without leading zeros.
-std::vector<std::string> split_at_digits(const std::string& name) {
-  std::vector<std::string> parts(1);
-  for (std::size_t i = 0; i < name.size();) {
-    if (!is_digit(name[i])) {
-      parts.back() += name[i++];
-      continue;
-    }
-    std::size_t end = i;
-    while (end < name.size() && is_digit(name[end])) ++end;
-    while (i + 1 < end && name[i] == '0') ++i;
-    parts.push_back(name.substr(i, end - i));
-    parts.emplace_back();
-    i = end;
-  }
-  return parts;
-}
+enum class Entry { files, folders };
 
-bool number_less(const std::string& a, const std::string& b) {
-  return a.size() != b.size() ? a.size() < b.size() : a < b;
-}
-
-/// Runs of digits are compared as numbers, the rest letter by letter.
-bool natural_less(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const auto x = split_at_digits(a.filename().string()), y = split_at_digits(b.filename().string());
-  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
-    if (x[i] != y[i]) return i % 2 == 1 ? number_less(x[i], y[i]) : x[i] < y[i];
-  }
-  return x.size() != y.size() ? x.size() < y.size() : a < b;
-}
-
-/// The one run of digits in which the names differ, of each name; empty where there is no such run.
-std::vector<std::string> numbers_of(const Paths& paths) {
-  std::vector<std::vector<std::string>> names;
-  for (const auto& path : paths) names.push_back(split_at_digits(path.filename().string()));
-  std::optional<std::size_t> varying;
-  for (const auto& name : names) {
-    if (name.size() != names.front().size()) return {};
-    for (std::size_t i = 0; i < name.size(); ++i) {
-      if (name[i] == names.front()[i]) continue;
-      if (i % 2 == 0 || (varying && *varying != i)) return {};
-      varying = i;
-    }
-  }
-  std::vector<std::string> numbers;
-  for (const auto& name : names)
-    if (varying) numbers.push_back(name[*varying]);
-  return numbers;
-}
-
-/// Names of files in a folder; empty where it cannot be looked into.
-std::optional<std::vector<std::string>> names_in(const std::filesystem::path& folder) {
+/// Names of files or folders in a folder; empty where it cannot be looked into.
+std::optional<std::vector<std::string>> names_in(const std::filesystem::path& folder, Entry kind = Entry::files) {
   std::error_code error;
   std::filesystem::directory_iterator entry(folder, error);
   if (error) return std::nullopt;
   std::vector<std::string> names;
   for (const std::filesystem::directory_iterator end; entry != end; entry.increment(error)) {
     std::error_code ignored;
-    if (!entry->is_directory(ignored)) names.push_back(entry->path().filename().string());
+    if (entry->is_directory(ignored) == (kind == Entry::folders)) names.push_back(entry->path().filename().string());
   }
   std::sort(names.begin(), names.end());
   return names;
 }
 
-Paths files_in_folder(const std::filesystem::path& folder) {
+std::vector<std::string> names_matching(const std::vector<std::string>& names, const std::string& pattern) {
+  const std::vector<PatternPart> parts = parts_of(pattern);
+  std::vector<std::string> matching;
+  for (const std::string& name : names)
+    if (fits(name, parts)) matching.push_back(name);
+  return matching;
+}
+
+bool has_wildcards(const std::string& name) { return name.find_first_of("*?%") != std::string::npos; }
+
+/// What tells the kind of a file: ".csv", ".csv.gz"; empty where the name ends in a number, as dump.100 does.
+std::string kind_of(const std::filesystem::path& path) {
+  std::string end = path.extension().string();
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (end.size() > 1 && end.find_first_not_of("0123456789eE+-", 1) == std::string::npos && end[1] >= '0' &&
+      end[1] <= '9')
+    return "";
+  return end == ".gz" ? kind_of(path.stem()) + end : end;
+}
+
+bool is_particle_file(const std::string& name) { return is_particle_extension(kind_of(name)); }
+
+/// Files of a folder without known ends, where they differ in their number only: part.0000, part.0001.
+std::vector<std::string> numbered_without_end(const std::vector<std::string>& names) {
+  std::vector<std::string> plain;
+  for (const std::string& name : names)
+    if (kind_of(name).empty() && !name.starts_with('.')) plain.push_back(name);
+  if (order_of_names(plain).numbers.empty()) plain.clear();
+  return plain;
+}
+
+/// One folder a time, as OpenFOAM has them: the file that each holds.
+Paths files_in_numbered_folders(const std::filesystem::path& folder) {
+  const std::vector<std::string> folders = names_in(folder, Entry::folders).value_or(std::vector<std::string>{});
+  if (order_of_names(folders).numbers.empty()) return {};
   Paths paths;
-  std::vector<std::string> extensions;
-  for (const std::string& name : names_in(folder).value_or(std::vector<std::string>{})) {
-    const std::filesystem::path path = folder / name;
-    if (!is_particle_extension(path.extension().string())) continue;
-    paths.push_back(path);
-    extensions.push_back(path.extension().string());
+  for (const std::string& name : folders) {
+    std::vector<std::string> inside = names_in(folder / name).value_or(std::vector<std::string>{});
+    std::erase_if(inside, [](const std::string& file) { return !is_particle_file(file); });
+    if (inside.empty()) continue;
+    if (inside.size() > 1)
+      throw InputError(
+          fmt::format("{}: this folder holds {} particle files; name the one that counts, for example "
+                      "'{}/*/{}'",
+                      (folder / name).string(), inside.size(), folder.string(), inside.front()));
+    paths.push_back(folder / name / inside.front());
   }
+  return paths;
+}
+
+Paths files_in_folder(const std::filesystem::path& folder) {
+  const std::vector<std::string> all = names_in(folder).value_or(std::vector<std::string>{});
+  std::vector<std::string> names, kinds;
+  for (const std::string& name : all)
+    if (is_particle_file(name)) names.push_back(name);
+  if (names.empty()) names = numbered_without_end(all);
+  Paths paths;
+  for (const std::string& name : names) {
+    paths.push_back(folder / name);
+    kinds.push_back(kind_of(name));
+  }
+  if (paths.empty()) paths = files_in_numbered_folders(folder);
   if (paths.empty())
     throw InputError(
         fmt::format("{}: this folder holds no particle files ({})", folder.string(), particle_extensions()));
-  std::sort(extensions.begin(), extensions.end());
-  if (extensions.front() != extensions.back())
+  std::sort(kinds.begin(), kinds.end());
+  if (!kinds.empty() && kinds.front() != kinds.back())
     throw InputError(fmt::format("{}: this folder holds {} and {} files; name one kind, for example '{}/*{}'",
-                                 folder.string(), extensions.front(), extensions.back(), folder.string(),
-                                 extensions.front()));
+                                 folder.string(), kinds.front(), kinds.back(), folder.string(), kinds.front()));
   return paths;
+}
+
+/// The folders that a pattern means, such as run/*/.
+Paths matching_folders(const std::filesystem::path& pattern) {
+  std::error_code error;
+  if (pattern.empty() || !has_wildcards(pattern.string()) || std::filesystem::is_directory(pattern, error))
+    return {pattern.empty() ? "." : pattern};
+  Paths found;
+  for (const std::filesystem::path& folder : matching_folders(pattern.parent_path()))
+    for (const std::string& name : names_matching(names_in(folder, Entry::folders).value_or(std::vector<std::string>{}),
+                                                  pattern.filename().string()))
+      found.push_back(folder / name);
+  return found;
 }
 
 Paths matching_files(const std::filesystem::path& pattern) {
   std::error_code error;
   if (std::filesystem::is_directory(pattern, error)) return files_in_folder(pattern);
   if (std::filesystem::exists(pattern, error)) return {pattern};
-  const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
-  const auto names = names_in(folder);
-  if (!names) throw InputError(fmt::format("{}: cannot look into the folder {}", pattern.string(), folder.string()));
   if (pattern.filename().string().size() > longest_name)
     throw InputError(fmt::format("{}...: no file has so long a name", pattern.string().substr(0, longest_name)));
-  const std::vector<PatternPart> parts = parts_of(pattern.filename().string());
   Paths paths;
-  for (const std::string& name : *names)
-    if (fits(name, parts)) paths.push_back(folder / name);
+  std::vector<std::string> others;
+  for (const std::filesystem::path& folder : matching_folders(pattern.parent_path())) {
+    const auto names = names_in(folder);
+    if (!names) throw InputError(fmt::format("{}: cannot look into the folder {}", pattern.string(), folder.string()));
+    for (const std::string& name : names_matching(*names, pattern.filename().string())) paths.push_back(folder / name);
+    others.insert(others.end(), names->begin(), names->end());
+  }
   if (paths.empty()) {
     throw InputError(
-        fmt::format("{}: no file matches{}", pattern.string(), did_you_mean(pattern.filename().string(), *names)));
+        fmt::format("{}: no file matches{}", pattern.string(), did_you_mean(pattern.filename().string(), others)));
   }
   return paths;
 }
 
 void check_formats(const Paths& paths) {
   for (const auto& path : paths) {
-    if (path.extension() != paths.front().extension())
+    if (kind_of(path) != kind_of(paths.front()))
       throw InputError(fmt::format("{}: follows {}; the files of a sequence have one format, name those of one kind",
                                    path.string(), paths.front().filename().string()));
   }
 }
 
+/// What tells the files apart: their own names or, where those are the same, the names of their folders, too.
+std::vector<std::string> telling_names(const Paths& paths) {
+  std::vector<std::string> names;
+  for (const auto& path : paths) names.push_back(path.filename().string());
+  std::vector<std::string> sorted = names;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return names;
+  const auto parts = [](const std::filesystem::path& path) {
+    return std::vector<std::filesystem::path>(path.begin(), path.end());
+  };
+  const auto first = parts(paths.front());
+  std::size_t common = first.size();
+  for (const auto& path : paths) {
+    const auto other = parts(path);
+    common = std::min(
+        common, static_cast<std::size_t>(std::mismatch(first.begin(), first.end(), other.begin(), other.end()).first -
+                                         first.begin()));
+  }
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    std::filesystem::path rest;
+    const auto all = parts(paths[k]);
+    for (std::size_t i = common; i < all.size(); ++i) rest /= all[i];
+    names[k] = rest.string();
+  }
+  return names;
+}
+
+std::string listed(const std::vector<double>& numbers) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(numbers.size(), 3); ++i)
+    text += (i ? ", " : "") + number_text(numbers[i]);
+  return text + (numbers.size() > 3 ? ", ..." : "");
+}
+
 /// Steps from the numbers, which ascend; without gaps where the numbers are no frame numbers.
-void count_steps(const std::vector<std::uint64_t>& numbers, NumberedFiles& files) {
-  std::uint64_t stride = 0;
-  for (std::size_t i = 1; i < numbers.size(); ++i) stride = std::gcd(stride, numbers[i] - numbers[i - 1]);
-  const std::uint64_t steps = stride > 0 ? (numbers.back() - numbers.front()) / stride : 0;
-  if (steps > most_steps_per_file * numbers.size()) {
-    files.missing = "";
+void count_steps(const NameOrder& names, NumberedFiles& files) {
+  const Raster raster = raster_of(names);
+  if (!raster.is_regular || raster.stride == 0) {
+    if (files.paths.size() > 1)
+      files.notes.push_back(fmt::format(
+          "the numbers in the names ({}) have no even steps: they only give the order, and no file counts as missing",
+          listed(names.numbers)));
     return;
   }
-  std::string first_gap;
-  for (std::size_t i = 1; i < numbers.size(); ++i) {
-    files.steps[i] = (numbers[i] - numbers.front()) / stride;
-    if (first_gap.empty() && files.steps[i] > files.steps[i - 1] + 1)
-      first_gap = files.paths[i - 1].filename().string();
-  }
-  const std::uint64_t missing = steps + 1 - numbers.size();
-  if (missing > 0)
-    files.missing =
-        fmt::format("{} of {} files are missing by their numbers (the first after {})", missing, steps + 1, first_gap);
+  files.steps = raster.steps;
+  if (raster.missing > 0)
+    files.missing = fmt::format("{} of {} files are missing by their numbers (the first after {})", raster.missing,
+                                raster.steps.back() + 1, files.paths[raster.before_gap].filename().string());
 }
 
 }  // namespace
@@ -224,26 +271,25 @@ NumberedFiles files_of_patterns(const std::vector<std::string>& names) {
     files.paths.insert(files.paths.end(), found.begin(), found.end());
   }
   if (files.paths.empty()) throw InputError("no particle files are given");
-  std::sort(files.paths.begin(), files.paths.end(), natural_less);
+  std::sort(files.paths.begin(), files.paths.end());
   const auto twice = std::adjacent_find(files.paths.begin(), files.paths.end());
   if (twice != files.paths.end()) throw InputError(twice->string() + ": is given twice");
   check_formats(files.paths);
-  files.steps.resize(files.paths.size());
+  const NameOrder names_in_order = order_of_names(telling_names(files.paths));
+  if (names_in_order.twins)
+    throw InputError(fmt::format("{}: has the same number as {}; a sequence has one file per number",
+                                 files.paths[names_in_order.twins->second].string(),
+                                 files.paths[names_in_order.twins->first].string()));
+  const Paths paths = std::move(files.paths);
+  files.paths.clear();
+  for (const std::size_t k : names_in_order.order) files.paths.push_back(paths[k]);
+  files.steps.resize(paths.size());
   std::iota(files.steps.begin(), files.steps.end(), std::uint64_t{0});
-
-  std::vector<std::uint64_t> numbers;
-  const std::vector<std::string> digits = numbers_of(files.paths);
-  for (std::size_t i = 0; i + 1 < files.paths.size(); ++i) {
-    const auto a = split_at_digits(files.paths[i].filename().string());
-    if (a == split_at_digits(files.paths[i + 1].filename().string()))
-      throw InputError(fmt::format("{}: has the same number as {}; a sequence has one file per number",
-                                   files.paths[i + 1].string(), files.paths[i].string()));
-  }
-  for (const std::string& number : digits) {
-    if (number.size() > 18) return files;  // a time stamp, not a counter
-    numbers.push_back(std::stoull(number));
-  }
-  if (!numbers.empty()) count_steps(numbers, files);
+  if (!names_in_order.note.empty()) files.notes.push_back(names_in_order.note);
+  if (names_in_order.numbers.empty()) return files;
+  files.numbers = names_in_order.numbers;
+  files.look_like_times = names_in_order.looks_like_times;
+  count_steps(names_in_order, files);
   return files;
 }
 

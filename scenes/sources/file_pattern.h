@@ -14,12 +14,15 @@ struct NumberedFiles {
   /// How many intervals a file is after the first one: 0, 1, 2, ... where none is missing. The interval is the largest
   /// one that fits all numbers, so that files 0, 10, 20, 40 are at 0, 1, 2 and 4.
   std::vector<std::uint64_t> steps;
-  std::string missing;  ///< In words, such as "3 files are missing (after f_2.ply)"; empty where none is.
+  std::vector<double> numbers;     ///< Of each file; empty where names have no one number.
+  bool look_like_times = false;    ///< They have decimals or exponents.
+  std::vector<std::string> notes;  ///< How the names were read, where there is doubt; one sentence each.
+  std::string missing;             ///< In words, such as "3 files are missing (after f_2.ply)"; empty where none is.
 };
 
-/// The files of all names, each of which is a file, a folder (all particle files in it), or a pattern whose last part
-/// may hold * (any letters), ? (one letter), %d or %04d (a number). The number is the one run of digits in which the
-/// names differ; where there is no such run, natural order counts (a2 before a10) and none is missing.
+/// The files of all names, each of which is a file, a folder (all particle files in it, or the one in each of its
+/// numbered folders), or a pattern whose parts may hold * (any letters), ? (one letter), %d or %04d (a number). Their
+/// order is that of order_of_names(), by the names of the files or, where those are the same, of their folders.
 /// @throws InputError where there are no such files, two files have the same number, or their formats are mixed.
 NumberedFiles files_of_patterns(const std::vector<std::string>& names);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/errors.h"
+#include "common/number_text.h"
 #include "scenes/io/particle_file.h"
 #include "scenes/io/read_bytes.h"
 #include "scenes/io/vtp_reader.h"
@@ -34,6 +35,20 @@ std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
+ParticleNeeds needs_of(const RecordedSpec& spec) {
+  ParticleNeeds needs;
+  needs.ids = spec.ids == RecordedSpec::Ids::automatic;
+  needs.keep = spec.keep;
+  if (!spec.region.empty()) {
+    if (spec.region.size() != 2 || ((spec.region[1] - spec.region[0]).array() < 0).any())
+      throw InputError("particles.recorded.region: expected two corners, the lower one first");
+    needs.region = sph::Box{spec.region[0], spec.region[1]};
+  }
+  needs.skip_invalid = spec.skip_invalid;
+  needs.skip_duplicates = spec.skip_duplicates;
+  return needs;
+}
+
 /// What a look at each file tells.
 struct Census {
   std::vector<double> times;  // empty where some file tells none
@@ -49,11 +64,12 @@ class SequenceOpener {
       throw InputError(fmt::format("particles.recorded.frame_interval is {:.4g} s; expected 0 or at least {:g} s",
                                    spec_.frame_interval, shortest_interval));
     if (!take_collection()) take_files();
+    sequence_.needs = needs_of(spec_);
     const ParticleTable table = read_particle_table(sequence_.files.front());
-    sequence_.first = read_particles(sequence_.files.front());
+    sequence_.first = read_particles(sequence_.files.front(), sequence_.needs);
     const bool wants_times = file_times_.empty() && spec_.frame_interval == 0 && table.time.has_value();
     const bool wants_ids = spec_.ids == RecordedSpec::Ids::automatic && !sequence_.first.has_ids;
-    const Census census = wants_times || wants_ids ? look_at_all() : Census{};
+    const Census census = wants_times || wants_ids ? look_at_all(whole_count(table)) : Census{};
     settle_times(wants_times ? census.times : std::vector<double>{}, table.time.has_value());
     settle_ids(census);
     return std::move(sequence_);
@@ -89,18 +105,39 @@ class SequenceOpener {
     std::vector<std::string> names;
     for (const std::string& name : spec_.files) names.push_back(absolute_name(directory_, name));
     NumberedFiles files = files_of_patterns(names);
+    if (spec_.times_in_names) file_times_ = times_from_names(files);
+    if (files.look_like_times) numbers_ = files.numbers;
     sequence_.files = std::move(files.paths);
     steps_ = std::move(files.steps);
+    sequence_.notes.insert(sequence_.notes.end(), files.notes.begin(), files.notes.end());
     if (!files.missing.empty())
       sequence_.warnings.push_back(files.missing + ": the time goes on across the gaps, particles are interpolated");
   }
 
-  Census look_at_all() const {
+  static std::vector<double> times_from_names(const NumberedFiles& files) {
+    if (files.numbers.empty() && files.paths.size() > 1)
+      throw InputError(fmt::format("{}: there is no one number in the names of the files that could be a time",
+                                   files.paths.front().string()));
+    return files.numbers;
+  }
+
+  /// Of the first file, as look_at_all() counts.
+  std::size_t whole_count(const ParticleTable& table) const {
+    const bool whole = sequence_.needs.keep.empty() && !sequence_.needs.region;
+    return whole ? table.count : sequence_.first.state.ids.size();
+  }
+
+  /// @param count of particles in the first file
+  Census look_at_all(std::size_t count) const {
     Census census;
     bool all_have_times = true;
     for (const auto& file : sequence_.files) {
       const ParticleTable table = read_particle_table(file);
-      census.same_count = census.same_count && table.count == sequence_.first.state.positions.size();
+      // What is kept may be less in one file than in another.
+      const bool whole = sequence_.needs.keep.empty() && !sequence_.needs.region;
+      const std::size_t here =
+          whole ? table.count : particles_from_table(table, file.string(), sequence_.needs).state.ids.size();
+      census.same_count = census.same_count && here == count;
       all_have_times = all_have_times && table.time && std::isfinite(*table.time);
       if (all_have_times) census.times.push_back(*table.time);
     }
@@ -127,6 +164,10 @@ class SequenceOpener {
         sequence_.notes.push_back(
             fmt::format("{}: 1/30 s between files is assumed; --frame-rate or --time-step sets it",
                         first_has_time ? "the times in the files do not ascend" : "the files give no times"));
+      if (!numbers_.empty())
+        sequence_.notes.push_back(fmt::format(
+            "the numbers in the names, {} to {}, look like times in seconds: --times-in-names plays them so",
+            number_text(numbers_.front()), number_text(numbers_.back())));
     }
   }
 
@@ -182,6 +223,11 @@ class SequenceOpener {
       sequence_.ids = Ids::order;
     } else if (!sequence_.first.has_ids) {
       sequence_.ids = Ids::none;
+      if (spec_.skip_invalid || spec_.skip_duplicates || !spec_.region.empty()) {
+        sequence_.notes.emplace_back(
+            "the particles have no ids, and some may be left out: it is not known which is which from file to file");
+        return;
+      }
       if (!census.same_count) {
         sequence_.notes.emplace_back(
             "the particles have no ids and their number changes: it is not known which is which from file to file");
@@ -202,7 +248,7 @@ class SequenceOpener {
   bool order_is_lasting() const {
     if (sequence_.files.size() < 2) return true;
     const std::vector<Vec3>& before = sequence_.first.state.positions;
-    const std::vector<Vec3> after = read_particles(sequence_.files[1]).state.positions;
+    const std::vector<Vec3> after = read_particles(sequence_.files[1], sequence_.needs).state.positions;
     std::vector<double> moved;
     for (std::size_t i = 0; i < before.size(); ++i) moved.push_back((after[i] - before[i]).norm());
     const double by_order = quantile(moved, 0.5), nearest = quantile(nearest_distances(before, after), 0.5);
@@ -211,7 +257,8 @@ class SequenceOpener {
 
   const RecordedSpec& spec_;
   const std::string& directory_;
-  std::vector<double> file_times_;    // of a collection
+  std::vector<double> file_times_;    // of a collection, or in the names
+  std::vector<double> numbers_;       // in the names, where they look like times
   std::vector<std::uint64_t> steps_;  // by the numbers
   ParticleSequence sequence_;
 };
@@ -227,7 +274,7 @@ std::vector<std::filesystem::path> sequence_files(const RecordedSpec& spec, cons
 }
 
 ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k) {
-  ParticleFile file = read_particles(sequence.files[k]);
+  ParticleFile file = read_particles(sequence.files[k], sequence.needs);
   const auto require = [&](bool has, bool first_has, const char* what) {
     if (first_has && !has)
       throw InputError(

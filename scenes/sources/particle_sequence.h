@@ -19,6 +19,7 @@ struct ParticleSequence {
   bool is_even = true;        ///< All times are whole multiples of the interval.
   Ids ids = Ids::of_files;
   ParticleFile first;              ///< The first file.
+  ParticleNeeds needs;             ///< What is asked of all.
   std::vector<std::string> notes;  ///< What was taken for granted, one sentence each.
   std::vector<std::string> warnings;
 };

@@ -50,10 +50,11 @@ struct SourceStatistics {
   std::uint64_t left_domain = 0;
   std::uint64_t emitted = 0, drained = 0;  ///< by emitters, by sinks
   std::uint64_t wall_crossings = 0, kept_out_of_gaps = 0;
-  double kinetic_energy = 0;                             ///< J
-  double potential_energy = 0;                           ///< J
-  double mean_density_error = 0, max_density_error = 0;  ///< |density / rest density - 1|
-  double last_time_step = 0;                             ///< s
+  double kinetic_energy = 0;                                                  ///< J
+  double potential_energy = 0;                                                ///< J
+  double mean_density_error = 0, max_density_error = 0;                       ///< |density / rest density - 1|
+  double last_time_step = 0;                                                  ///< s
+  std::uint64_t not_wanted = 0, skipped_invalid = 0, skipped_duplicates = 0;  ///< of the recorded file at present
   std::string summary;  ///< One line for the log: settings chosen, limits of the step, memory.
   std::vector<std::pair<std::string, double>> seconds;  ///< Of computing time by stage, since the start.
 };

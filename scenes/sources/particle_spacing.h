@@ -1,6 +1,7 @@
 // The distance of neighbouring particles, where nobody tells it.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "sph/geometry/triangle_mesh.h"
@@ -14,10 +15,22 @@ std::vector<double> nearest_distances(const std::vector<sph::Vec3>& from, const 
 /// The value below which a share of the values lie; 0 where there are none.
 double quantile(std::vector<double> values, double share);
 
-/// Spacing (m) by the median distance to the nearest neighbour and the volume that 32 neighbours take, over at most
-/// some ten thousand particles: the edge of the cube that a particle fills. 0 where there are fewer than two apart.
-/// Exact for a lattice; within some per cent for disordered particles, whose nearest neighbours are up to a fifth
-/// nearer.
+/// The edge of the cube that a particle fills, and how it was found.
+struct SpacingEstimate {
+  double spacing = 0;          ///< m; 0: fewer than two places
+  double uncertainty = 0;      ///< Of the spacing, as a share of it.
+  const char* method = "";     ///< In words, for the log.
+  std::size_t coincident = 0;  ///< Particles in places that others have, too; they are counted once.
+  int dimensions = 3;          ///< 2: all particles lie in a plane; 1: in a line
+};
+
+/// By the cell of the lattice, spanned by the three nearest neighbours that are not in a plane, where most particles
+/// have the same: exact, sheared and thin lattices included. Otherwise by counting neighbours in balls inside the
+/// fluid, where there is an inside, else by the cells with a correction for disorder. At most some ten thousand
+/// particles are looked at.
+SpacingEstimate estimate_spacing(const std::vector<sph::Vec3>& positions);
+
+/// Its spacing only (m).
 double estimated_spacing(const std::vector<sph::Vec3>& positions);
 
 }  // namespace flowskin::scenes

@@ -7,7 +7,9 @@
 #include <functional>
 #include <numeric>
 
+#include "common/bounds.h"
 #include "common/errors.h"
+#include "common/outliers.h"
 #include "scenes/io/checksum.h"
 #include "scenes/io/read_bytes.h"
 #include "scenes/sources/forward_time.h"
@@ -98,6 +100,45 @@ void check_speeds(const ParticleSequence& sequence, double spacing) {
       sequence.files.front().string(), fastest, fastest * sequence.interval, sequence.interval, farthest, spacing));
 }
 
+/// Where particles, found again by their ids, go clearly farther or less far from file to file than their velocities
+/// say: by what factor. The first two files with motion count. Empty: all is well, or nothing can be told.
+std::string contradicting_velocities(const ParticleSequence& sequence, double spacing) {
+  constexpr double least_factor = 1 / 1.5, most_factor = 1.5;
+  constexpr double least_path = 0.02;  // spacings, by either
+  constexpr std::size_t most_looks = 4, fewest = 8;
+  if (!sequence.first.has_velocities || sequence.ids == ParticleSequence::Ids::none) return {};
+  const std::size_t count = sequence.files.size();
+  for (std::size_t look = 0; look < most_looks && count >= 2; ++look) {
+    const std::size_t k = look * (count - 2) / (most_looks - 1);
+    ParticleState a = read_sequence_file(sequence, k).state, b = read_sequence_file(sequence, k + 1).state;
+    if (sequence.ids == ParticleSequence::Ids::order) {
+      std::iota(a.ids.begin(), a.ids.end(), 0);
+      std::iota(b.ids.begin(), b.ids.end(), 0);
+    }
+    const double interval = sequence.times[k + 1] - sequence.times[k];
+    std::vector<double> factors;
+    match_ids(a.ids, b.ids, [&](std::ptrdiff_t i, std::ptrdiff_t j) {
+      if (i < 0 || j < 0) return;
+      const Vec3 path = b.positions[j] - a.positions[i], told = interval / 2 * (a.velocities[i] + b.velocities[j]);
+      if (std::max(path.norm(), told.norm()) < least_path * spacing) return;
+      factors.push_back(told.isZero(0) ? HUGE_VAL : path.dot(told) / told.squaredNorm());
+    });
+    if (factors.size() < std::max(fewest, a.ids.size() / 4)) continue;
+    const double factor = quantile(factors, 0.5);
+    if (factor >= least_factor && factor <= most_factor) return {};
+    if (!(factor > 0 && std::isfinite(factor)))
+      return fmt::format(
+          "from {} to the next file the particles do not move as their velocities say: are the ids lasting, and the "
+          "velocities right?",
+          sequence.files[k].filename().string());
+    return fmt::format(
+        "from {} to the next file the particles go {:.3g} times as far as their velocities say: the frame rate "
+        "(--time-step {:.4g} would fit) or the unit of the velocities seems wrong",
+        sequence.files[k].filename().string(), factor, interval * factor);
+  }
+  return {};
+}
+
 /// The particles of both states, each moved by its velocity, weighted by how near the states are.
 ParticleState blended(const ParticleState& a, const ParticleState& b, double s, double interval) {
   ParticleState state;
@@ -112,6 +153,32 @@ ParticleState blended(const ParticleState& a, const ParticleState& b, double s, 
   state.earlier_count = state.ids.size();
   add(b, s, (s - 1) * interval);
   return state;
+}
+
+/// Leaves out particles so far from nearly all others that no grid reaches them. @return how many
+std::size_t leave_out_strays(ParticleState& state, double spacing) {
+  constexpr double farthest = 1e5;  // spacings from the box of nearly all
+  const std::size_t count = state.ids.size();
+  if (count == 0) return 0;
+  const Box box = bounds(without_outliers(state.positions, farthest * spacing));
+  const auto is_inside = [&](const Vec3& x) {
+    return ((x - box.min).array() >= 0).all() && ((box.max - x).array() >= 0).all();
+  };
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_inside(state.positions[i])) continue;
+    state.ids[kept] = state.ids[i];
+    state.positions[kept] = state.positions[i];
+    state.velocities[kept] = state.velocities[i];
+    state.rest_positions[kept] = state.rest_positions[i];
+    state.densities[kept++] = state.densities[i];
+  }
+  state.ids.resize(kept);
+  state.positions.resize(kept);
+  state.velocities.resize(kept);
+  state.rest_positions.resize(kept);
+  state.densities.resize(kept);
+  return count - kept;
 }
 
 /// A particle's place in another file.
@@ -176,6 +243,8 @@ RecordedSource::RecordedSource(const Scene& scene)
       spacing_(scene.particles.spacing),
       walls_(sample_walls(scene)) {
   check_speeds(sequence_, spacing_);
+  if (const std::string warning = contradicting_velocities(sequence_, spacing_); !warning.empty())
+    warnings_.push_back(warning);
   advance_to(0);
 }
 
@@ -226,8 +295,11 @@ const ParticleState& RecordedSource::file_state(std::size_t k) {
 }
 
 void RecordedSource::read_into_cache(std::size_t k) {
-  ParticleState state = read_sequence_file(sequence_, k).state;
+  ParticleFile file = read_sequence_file(sequence_, k);
+  left_out_[k] = file.left_out;
+  ParticleState state = std::move(file.state);
   if (sequence_.ids != ParticleSequence::Ids::of_files) std::iota(state.ids.begin(), state.ids.end(), 0);
+  left_out_[k].unwanted += leave_out_strays(state, spacing_);
   settle_rest_positions(k, state);
   cache_[k] = std::move(state);
   if (!checksums_.contains(k)) checksums_[k] = checksum(0, read_bytes(sequence_.files[k]));
@@ -363,6 +435,12 @@ ParticleState RecordedSource::complete_state(std::size_t k) {
   return here;
 }
 
+std::size_t RecordedSource::nearest_file() const {
+  const std::vector<double>& times = sequence_.times;
+  const auto after = std::upper_bound(times.begin(), times.end(), state_.time + same_time * sequence_.interval);
+  return after == times.begin() ? 0 : static_cast<std::size_t>(after - times.begin()) - 1;
+}
+
 SourceStatistics RecordedSource::statistics() const {
   using Ids = ParticleSequence::Ids;
   SourceStatistics statistics;
@@ -376,6 +454,16 @@ SourceStatistics RecordedSource::statistics() const {
       sequence_.first.has_velocities ? "as recorded"
       : has_lasting_ids()            ? "from differences"
                                      : "unknown");
+  const auto next = left_out_.upper_bound(nearest_file());
+  if (next == left_out_.begin()) return statistics;
+  const LeftOut& left_out = std::prev(next)->second;
+  statistics.not_wanted = left_out.unwanted;
+  statistics.skipped_invalid = left_out.invalid;
+  statistics.skipped_duplicates = left_out.duplicate;
+  if (left_out.unwanted + left_out.invalid + left_out.duplicate > 0)
+    statistics.summary +=
+        fmt::format("; left out of the file at hand: {} not wanted or too far out, {} invalid, {} duplicate",
+                    left_out.unwanted, left_out.invalid, left_out.duplicate);
   return statistics;
 }
 

@@ -26,12 +26,15 @@ class RecordedSource : public ParticleSource {
   void advance_to(double time) override;
   double spacing() const override { return spacing_; }
   SourceStatistics statistics() const override;
+  std::vector<std::string> warnings() const override { return warnings_; }
   bool ends_before(double time) const override;
   void save(StateWriter& writer) const override;
   void restore(StateReader& reader) override;
 
  private:
   bool has_lasting_ids() const { return sequence_.ids != ParticleSequence::Ids::none; }
+  /// The last file that is not after the present time.
+  std::size_t nearest_file() const;
   /// File k as it is, with rest positions; a few files are kept.
   const ParticleState& file_state(std::size_t k);
   /// File k with velocities.
@@ -55,9 +58,11 @@ class RecordedSource : public ParticleSource {
   };
 
   ParticleSequence sequence_;
+  std::vector<std::string> warnings_;
   double spacing_;
   tracking::Walls walls_;
   std::map<std::size_t, ParticleState> cache_;
+  std::map<std::size_t, LeftOut> left_out_;           ///< Of the files that have been read.
   std::map<std::uint64_t, Vec3> rest_positions_;      ///< By id; where the files have none.
   std::vector<Renewal> renewals_;                     ///< By the cached files, in the order in which they were made.
   std::map<std::uint64_t, std::uint32_t> checksums_;  ///< Of the files that have been read.

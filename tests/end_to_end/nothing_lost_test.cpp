@@ -87,8 +87,11 @@ TEST_F(NothingLost, InputsAreKnownThroughLinks) {
 
 TEST_F(NothingLost, RecordedParticlesInTheFolderOfTheRun) {
   const fs::path project = folder_ / "project", raw = project / "particles/raw";
-  for (int k = 0; k < 3; ++k)
-    put(raw / ("p_" + std::to_string(k) + ".csv"), "x,y,z\n0,0,0\n0.1,0,0\n0,0.1,0\n0,0,0.1\n");
+  std::string cube = "x,y,z\n";  // enough particles for a surface
+  for (int i = 0; i < 27; ++i)
+    cube += std::to_string(0.1 * (i % 3)) + "," + std::to_string(0.1 * (i / 3 % 3)) + "," +
+            std::to_string(0.1 * (i / 9)) + "\n";
+  for (int k = 0; k < 3; ++k) put(raw / ("p_" + std::to_string(k) + ".csv"), cube);
   put(project / "log.txt", "mine");
   auto before = contents(project);
   const auto track = [&](const std::string& particles, const std::vector<std::string>& more = {}) {

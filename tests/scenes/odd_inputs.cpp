@@ -22,6 +22,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
+void open_files(const std::string& pattern) {
+  RecordedSpec spec;
+  spec.files = {pattern};
+  open_sequence(spec, "");
+}
+
 class OddInputs : public IoTest {
  protected:
   /// Names of things that are no regular files.
@@ -51,9 +57,7 @@ TEST_F(OddInputs, WhatIsNoRegularFileIsRefusedByEveryReader) {
   }
   EXPECT_THAT(message_of<InputError>([&] { read_bytes(path("fifo")); }), HasSubstr("process substitution"));
   std::filesystem::create_symlink(path("fifo"), path("p_1.csv"));
-  EXPECT_THAT(message_of<InputError>([&] {
-                open_sequence({{path("p_*.csv").string()}, 0, {}}, "");
-              }),
+  EXPECT_THAT(message_of<InputError>([&] { open_files(path("p_*.csv").string()); }),
               HasSubstr("is not a regular file"));
 }
 
@@ -164,9 +168,7 @@ TEST_F(OddInputs, TimesThatCannotBePlayedAreErrorsOfTheFiles) {
     write_text("t.pvd", fmt::format("<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"{}\" file=\"a.csv\"/>"
                                     "<DataSet timestep=\"{}\" file=\"b.csv\"/></Collection></VTKFile>",
                                     both.substr(0, space), both.substr(space + 1)));
-    EXPECT_THAT(message_of<InputError>([&] {
-                  open_sequence({{path("t.pvd").string()}, 0, {}}, "");
-                }),
+    EXPECT_THAT(message_of<InputError>([&] { open_files(path("t.pvd").string()); }),
                 AllOf(HasSubstr("none that can be played"), HasSubstr("--time-step")))
         << times;
   }

@@ -133,12 +133,12 @@ TEST(ParticleFiles, TablesInAllDialects) {
 }
 
 TEST(ParticleFiles, WrongTablesAreErrorsWithTheirLine) {
-  EXPECT_THAT(error_of_file("x,y\n1,2\n"), AllOf(HasSubstr("only some components"), HasSubstr("position")));
+  EXPECT_THAT(error_of_file("x,y\n1,2\n"), AllOf(HasSubstr("no third coordinate"), HasSubstr("two dimensions")));
   EXPECT_THAT(error_of_file("a,b,c\n1,2,3\n"), AllOf(HasSubstr("x, y and z"), HasSubstr("a, b, c")));
   EXPECT_THAT(error_of_file("1,2,3\n4,5,6\n"), AllOf(HasSubstr("line 1"), HasSubstr("column names")));
   EXPECT_THAT(error_of_file("x,y,z\n1,2,3\n1,2\n"), AllOf(HasSubstr("line 3"), HasSubstr("2 values"), HasSubstr("3")));
   EXPECT_THAT(error_of_file("x,y,z\n1,2,3,4\n"), AllOf(HasSubstr("line 2"), HasSubstr("more values")));
-  EXPECT_THAT(error_of_file("x;y;z\n1,5;2;3\n"), AllOf(HasSubstr("line 2"), HasSubstr("1,5"), HasSubstr("point")));
+  EXPECT_THAT(error_of_file("x,y,z\n\"1,5\",2,3\n"), AllOf(HasSubstr("line 2"), HasSubstr("1,5"), HasSubstr("point")));
   EXPECT_THAT(error_of_file("x,y,z\n1,2,abc\n"), AllOf(HasSubstr("line 2"), HasSubstr("\"z\""), HasSubstr("abc")));
   EXPECT_THAT(error_of_file("x,y,z\n1,2,nan\n"), HasSubstr("not finite"));
   EXPECT_THAT(error_of_file("x,y,z\n1,2,inf\n"), HasSubstr("not finite"));

@@ -17,6 +17,7 @@ namespace flowskin::scenes::recorded_source_test {
 namespace {
 
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 struct TestParticle {
@@ -65,7 +66,9 @@ class RecordedSourceTest : public testing::Test {
     scene.directory = folder_.string();
     scene.particles.source = ParticlesSpec::Source::recorded;
     scene.particles.spacing = 0.1;
-    scene.particles.recorded = {{pattern}, interval, ids};
+    scene.particles.recorded.files = {pattern};
+    scene.particles.recorded.frame_interval = interval;
+    scene.particles.recorded.ids = ids;
     return make_source(scene);
   }
 
@@ -260,11 +263,51 @@ TEST_F(RecordedSourceTest, GapsInTheNumbersAreMissingFiles) {
   const NumberedFiles steps = files_of_patterns({(folder_ / "step_*.csv").string()});
   EXPECT_EQ(steps.steps, (std::vector<std::uint64_t>{0, 1, 2}));
   EXPECT_EQ(steps.missing, "");
+  EXPECT_THAT(steps.notes, ElementsAre(HasSubstr("1033, 2071, 3110")));
+}
+
+TEST_F(RecordedSourceTest, FilesWithoutEndsAndOneFolderATime) {
+  const auto touch = [&](const std::string& name) {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name) << "x,y,z\n1,2,3\n";
+  };
+  const auto names = [&](const std::vector<std::string>& patterns) {
+    std::vector<std::string> absolute, result;
+    for (const std::string& pattern : patterns) absolute.push_back((folder_ / pattern).string());
+    for (const auto& file : files_of_patterns(absolute).paths)
+      result.push_back(file.lexically_relative(folder_).string());
+    return result;
+  };
+  for (const char* name :
+       {"dump/dump.0", "dump/dump.100", "dump/dump.20", "run/0/p.csv", "run/0.0005/p.csv", "run/1e-05/p.csv",
+        "run/constant/p.csv", "times/0.5/p.csv", "times/10/p.csv", "times/2/p.csv", "upper/P_1.CSV", "upper/P_2.csv"})
+    touch(name);
+  const auto dumps = ElementsAre("dump/dump.0", "dump/dump.20", "dump/dump.100");
+  EXPECT_THAT(names({"dump"}), dumps);
+  EXPECT_THAT(names({"dump/dump.*"}), dumps);
+  EXPECT_THAT(names({"dump/dump.100", "dump/dump.0", "dump/dump.20"}), dumps);
+  EXPECT_THAT(names({"run/0*/p.csv", "run/1e*/p.csv"}),
+              ElementsAre("run/0/p.csv", "run/1e-05/p.csv", "run/0.0005/p.csv"));
+  const auto times = ElementsAre("times/0.5/p.csv", "times/2/p.csv", "times/10/p.csv");
+  EXPECT_THAT(names({"times"}), times);
+  EXPECT_THAT(names({"times/*/p.csv"}), times);
+  EXPECT_THAT(names({"times/10/p.csv", "times/0.5/p.csv", "times/2/p.csv"}), times);
+  EXPECT_THAT(names({"upper"}), ElementsAre("upper/P_1.CSV", "upper/P_2.csv"));
+  touch("times/2/q.csv");
+  EXPECT_THAT(error_of([&] { names({"times"}); }), HasSubstr("times/*/p.csv"));
+  RecordedSpec spec;
+  spec.files = {"times/*/p.csv"};
+  EXPECT_THAT(open_sequence(spec, folder_.string()).notes, testing::Contains(HasSubstr("--times-in-names")));
+  spec.times_in_names = true;
+  EXPECT_EQ(open_sequence(spec, folder_.string()).times, (std::vector<double>{0, 1.5, 9.5}));
 }
 
 TEST_F(RecordedSourceTest, TimesComeFromTheFilesWhereNobodyTellsThem) {
   const auto sequence = [&](const std::string& pattern, double interval = 0) {
-    return open_sequence({{pattern}, interval, RecordedSpec::Ids::automatic}, folder_.string());
+    RecordedSpec spec;
+    spec.files = {pattern};
+    spec.frame_interval = interval;
+    return open_sequence(spec, folder_.string());
   };
   const auto write_times = [&](const std::string& name, const std::vector<double>& times) {
     for (std::size_t k = 0; k < times.size(); ++k)
@@ -423,6 +466,42 @@ TEST_F(RecordedSourceTest, IsNotResumedWithOtherParticles) {
   EXPECT_EQ(resume(), Vec3(1.5, 1, 0));
   write_file(1, 3);  // as long as before
   EXPECT_THAT(error_of([&] { resume(); }), AllOf(HasSubstr("f_1.ply"), HasSubstr("changed")));
+}
+
+TEST_F(RecordedSourceTest, AParticleThatFlewOffIsLeftOutWhereNoGridReachesIt) {
+  for (int k = 0; k < 2; ++k) {
+    std::vector<TestParticle> particles;
+    for (std::uint64_t i = 0; i < 60; ++i)
+      particles.push_back({i, 0.1 * Vec3(double(i % 4), double(i / 4 % 4), double(i / 16))});
+    particles.push_back({60, k == 0 ? Vec3(0.4, 0, 0) : Vec3(1e7, 0, 0)});
+    particles.push_back({61, Vec3(50, 0, 0)});
+    write(fmt::format("stray_{}.ply", k), particles, with_ids);
+  }
+  const auto source = open("stray_*.ply");
+  EXPECT_EQ(source->state().ids.size(), 62U);
+  EXPECT_EQ(source->statistics().not_wanted, 0U);
+  source->advance_to(0.5);
+  EXPECT_EQ(source->state().ids.size(), 61U);
+  EXPECT_EQ(source->statistics().not_wanted, 1U);
+}
+
+TEST_F(RecordedSourceTest, VelocitiesThatContradictTheMotionAreWarnedOf) {
+  const auto write_moving = [&](const std::string& name, double factor) {
+    for (int k = 0; k < 3; ++k) {
+      std::vector<TestParticle> particles;
+      for (std::uint64_t i = 0; i < 60; ++i)
+        particles.push_back({i, Vec3(0.1 * double(i % 4), 0.1 * double(i / 4 % 4) - 0.05 * k, 0.1 * double(i / 16)),
+                             Vec3(0, -0.1 * factor, 0)});
+      write(fmt::format("{}_{}.ply", name, k), particles, with_ids | with_velocities);
+    }
+  };
+  write_moving("right", 1);
+  write_moving("fast", 8);
+  write_moving("back", -1);
+  EXPECT_TRUE(open("right_*.ply")->warnings().empty());
+  EXPECT_THAT(open("fast_*.ply")->warnings(),
+              ElementsAre(AllOf(HasSubstr("0.125 times"), HasSubstr("--time-step 0.0625"))));
+  EXPECT_THAT(open("back_*.ply")->warnings(), ElementsAre(HasSubstr("do not move as")));
 }
 
 TEST_F(RecordedSourceTest, SpacingIsEstimatedFromDistances) {

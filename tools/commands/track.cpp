@@ -7,6 +7,7 @@
 
 #include "common/bounds.h"
 #include "common/errors.h"
+#include "common/outliers.h"
 #include "scenes/scene_checks.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/particle_sequence.h"
@@ -31,7 +32,11 @@ struct TrackOptions {
   std::vector<fs::path> particles;  ///< files, patterns, a folder, or one .pvd
   std::optional<double> spacing, radius, edge_length, tile_size;
   std::optional<double> frame_rate, time_step;  ///< files per second, s between files
-  bool no_ids = false;
+  bool no_ids = false, times_in_names = false;
+  std::string keep;            ///< expression of columns; empty: all
+  std::vector<double> region;  ///< two corners (m); empty: all
+  bool skip_invalid = false, skip_duplicates = false;
+  bool list = false;             ///< only say which files are read, in which order and at which times
   std::string texture, mapping;  ///< empty: the scene file's defaults
   std::string up = "y";          ///< or z
   RunOptions run;                ///< without scene_file
@@ -47,13 +52,43 @@ void tell(const TrackOptions& options, const std::string& line) {
 
 void warn(const std::string& line) { say_line("warning: " + line); }
 
-/// Spacing as given, from the radius in the files, or from the distances in the first file that says something.
+/// Particles that tell the spacing: those of the first file, or of a later one that has more than twice as many, since
+/// emitters begin with a layer or less.
+std::vector<Vec3> telling_positions(const ParticleSequence& sequence) {
+  constexpr std::size_t looks = 5;
+  std::vector<Vec3> most = sequence.first.state.positions;
+  const std::size_t first = most.size(), last = sequence.files.size() - 1;
+  const auto look_at = [&](std::size_t k) {
+    std::vector<Vec3> positions = scenes::read_sequence_file(sequence, k).state.positions;
+    if (positions.size() > most.size() && positions.size() > 2 * first) most = std::move(positions);
+  };
+  for (std::size_t look = 1; look < looks && last > 0; ++look) look_at(look * last / (looks - 1));
+  for (std::size_t k = 1; k <= last && most.size() < 2; ++k) look_at(k);
+  return most;
+}
+
+/// What the spacing was found by, and what is odd about the particles.
+void tell_estimate(const TrackOptions& options, const scenes::SpacingEstimate& estimate, std::size_t particles) {
+  tell(options, fmt::format("spacing: {:.4g} m, estimated: {}, to within some {:.0f} % (--spacing settles it)",
+                            estimate.spacing, estimate.method, 100 * estimate.uncertainty));
+  if (estimate.coincident > 0)
+    warn(fmt::format("{} of {} particles are in places that others have, too; --skip-duplicates leaves them out",
+                     estimate.coincident, particles));
+  if (estimate.dimensions < 3)
+    warn(
+        fmt::format("all particles lie in a {}: these are data in {} dimension{}. One layer of particles has no "
+                    "surface; repeat the "
+                    "particles in several layers, {:.4g} m apart",
+                    estimate.dimensions == 2 ? "plane" : "line", estimate.dimensions,
+                    estimate.dimensions == 2 ? "s" : "", estimate.spacing));
+}
+
+/// Spacing as given, from the radius in the files, or from the distances in the file that says most.
 double spacing_of(const TrackOptions& options, const ParticleSequence& sequence) {
   if (options.spacing) return *options.spacing;
-  std::vector<Vec3> positions = sequence.first.state.positions;
-  for (std::size_t k = 1; k < sequence.files.size() && positions.size() < 2; ++k)
-    positions = scenes::read_sequence_file(sequence, k).state.positions;
-  const double estimate = scenes::estimated_spacing(positions);
+  const std::vector<Vec3> positions = telling_positions(sequence);
+  const scenes::SpacingEstimate found = scenes::estimate_spacing(positions);
+  const double estimate = found.spacing;
   const double by_radius = 2 * sequence.first.radius;
   const bool agree =
       estimate > 0 && by_radius < kLargestDisagreement * estimate && estimate < kLargestDisagreement * by_radius;
@@ -68,8 +103,7 @@ double spacing_of(const TrackOptions& options, const ParticleSequence& sequence)
   if (by_radius > 0)
     warn(fmt::format("the files say radius {:.4g} m, but neighbours are {:.4g} m apart: --spacing settles it",
                      by_radius / 2, estimate));
-  tell(options,
-       fmt::format("spacing: {:.4g} m, estimated from the distances of neighbours (--spacing settles it)", estimate));
+  tell_estimate(options, found, positions.size());
   return estimate;
 }
 
@@ -84,7 +118,7 @@ std::string default_name(const fs::path& first) {
   fs::path folder = fs::absolute(first, no_current_folder).parent_path();
   for (; (name.empty() || name == "frame" || name == "particles") && folder.has_relative_path();
        folder = folder.parent_path())
-    name = folder.filename().string();
+    name = without_number(folder.filename().string()).empty() ? "" : folder.filename().string();
   return "track_" + (name.empty() ? "particles" : name);
 }
 
@@ -114,8 +148,20 @@ std::vector<Vec3> places_seen(const ParticleSequence& sequence) {
   return places;
 }
 
-void set_pictures(const TrackOptions& options, const ParticleSequence& sequence, scenes::Scene& scene) {
+/// What pictures need not show is said.
+std::vector<Vec3> places_shown(const ParticleSequence& sequence, double spacing) {
   const std::vector<Vec3> places = places_seen(sequence);
+  std::vector<Vec3> shown = without_outliers(places, kPictureMargin * spacing);
+  if (shown.size() < places.size())
+    warn(fmt::format(
+        "{} of {} particles (at the start, in the middle and at the end) are so far out that pictures leave "
+        "them out; --region leaves particles out altogether",
+        places.size() - shown.size(), places.size()));
+  return shown;
+}
+
+void set_pictures(const TrackOptions& options, const ParticleSequence& sequence, scenes::Scene& scene) {
+  const std::vector<Vec3> places = places_shown(sequence, scene.particles.spacing);
   if (options.up == "z") {
     scene.render.camera.up = {0, 0, 1};
     scene.texture.axis = {0, 0, 1};
@@ -134,6 +180,13 @@ scenes::RecordedSpec recorded_spec(const TrackOptions& options) {
   for (const fs::path& file : options.particles) spec.files.push_back(file.string());
   if (options.time_step) spec.frame_interval = *options.time_step;
   if (options.frame_rate) spec.frame_interval = 1 / *options.frame_rate;
+  spec.times_in_names = options.times_in_names;
+  spec.keep = options.keep;
+  if (!options.region.empty())
+    spec.region = {Vec3(options.region[0], options.region[1], options.region[2]),
+                   Vec3(options.region[3], options.region[4], options.region[5])};
+  spec.skip_invalid = options.skip_invalid;
+  spec.skip_duplicates = options.skip_duplicates;
   if (options.no_ids) spec.ids = scenes::RecordedSpec::Ids::none;
   return spec;
 }
@@ -178,8 +231,18 @@ scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) 
   return scene;
 }
 
+/// Order and times, one file a line; what was taken for granted goes to standard error.
+int list_files(const ParticleSequence& sequence) {
+  for (const std::string& warning : sequence.warnings) warn(warning);
+  for (const std::string& note : sequence.notes) say_line(note);
+  for (std::size_t k = 0; k < sequence.files.size(); ++k)
+    put(fmt::format("{}  {:.9g} s  {}\n", k, sequence.times[k], sequence.files[k].string()));
+  return 0;
+}
+
 int track(const TrackOptions& options) {
   ParticleSequence sequence = scenes::open_sequence(recorded_spec(options), scenes::current_folder());
+  if (options.list) return list_files(sequence);
   for (const std::string& warning : sequence.warnings) warn(warning);
   tell(options, fmt::format("{} files from {}, one every {:.6g} s", sequence.files.size(),
                             sequence.files.front().string(), sequence.interval));
@@ -225,6 +288,17 @@ std::vector<Option> files_options(TrackOptions& chosen) {
        &chosen.time_step,
        "The same as seconds between files",
        {.range = rates, .excludes = "--frame-rate"}},
+      {"--times-in-names", &chosen.times_in_names,
+       "The numbers in the names of the files are their times (s), as in Result-0.0005.csv or 0.25/particles.csv"},
+      {"--keep", &chosen.keep, "Only particles whose columns fulfil this, such as 'Type == 1 and z > 0.5'"},
+      {"--region",
+       &chosen.region,
+       "Only particles between two corners: XMIN YMIN ZMIN XMAX YMAX ZMAX (m)",
+       {.count = 6}},
+      {"--skip-invalid", &chosen.skip_invalid, "Leave out particles with values that are missing or not finite"},
+      {"--skip-duplicates", &chosen.skip_duplicates,
+       "Leave out particles whose id or place an earlier one of the same file has"},
+      {"--list", &chosen.list, "Print the files in their order, with their times, and do nothing else"},
       {"--frames", &chosen.run.frames, "Number of frames after the first (default: all)", {.range = {{1, 1000000}}}},
       velocity_option(chosen.run.velocity, "auto"),
       {"--no-ids", &chosen.no_ids, "Do not match particles from file to file, neither by id nor by order"},

@@ -8,11 +8,13 @@
 
 #include "common/bounds.h"
 #include "common/errors.h"
+#include "common/outliers.h"
 #include "scenes/io/atomic_file.h"
 #include "scenes/scene_file.h"
 #include "tools/pipeline/interruption.h"
 #include "tools/pipeline/nearer_state.h"
 #include "tools/pipeline/run_report.h"
+#include "tools/pipeline/surface_doubts.h"
 #include "tools/textures/texture_mapping.h"
 
 namespace flowskin::tools {
@@ -28,6 +30,11 @@ std::string command_to_resume(const RunOptions& options) {
   return command + "--resume";
 }
 
+/// Of the fluid at the start, without particles that flew off: what pictures show.
+Box box_of_most(const scenes::ParticleSource& source) {
+  return bounds(without_outliers(source.state().positions, kPictureMargin * source.spacing()));
+}
+
 }  // namespace
 
 FrameLoop::FrameLoop(const RunOptions& options, RunStart start, const RunDirectory& directory, RunRecorder& recorder,
@@ -39,7 +46,7 @@ FrameLoop::FrameLoop(const RunOptions& options, RunStart start, const RunDirecto
       checkpoints_(directory, checkpoint_header(start, options.compare), start.scene.output.checkpoint_interval),
       scene_(std::move(start.scene)),
       source_(std::move(start.source)),
-      output_(directory, scene_, start.texture, bounds(source_->state().positions), clock_.stages),
+      output_(directory, scene_, start.texture, box_of_most(*source_), clock_.stages),
       table_(directory.frames_csv(), clock_.stages) {
   clock_.add_earlier("source", start.seconds);
   if (resumed) log_.detail("resumed");
@@ -50,7 +57,7 @@ FrameLoop::FrameLoop(const RunOptions& options, RunStart start, const RunDirecto
   if (const auto methods = methods_to_compare(options_.compare); !methods.empty()) {
     comparison_ = std::make_unique<Comparison>(scene_, directory_, methods, surface_->tracker(),
                                                to_particles(source_->state()), clock_.stages);
-    if (scene_.render.enabled) comparison_->make_pictures(start.texture, bounds(source_->state().positions));
+    if (scene_.render.enabled) comparison_->make_pictures(start.texture, box_of_most(*source_));
   }
   if (resumed)
     checkpoints_.resume(*resumed, [&](StateReader& reader) {
@@ -140,6 +147,7 @@ void FrameLoop::record() {
   if (surface_)
     shown = surface_->frame(source_->state(), frame_ == 0 ? 0 : 1 / scene_.frame_rate, frame_ / scene_.frame_rate);
   const SurfaceFrame* shown_surface = shown ? &*shown : nullptr;
+  doubt_first_surface();
   output_.write(frame_, particles, shown_surface);
   if (comparison_) comparison_->record(frame_, rest, particles);
   const FrameRow& row = table_.add_frame(frame_, *source_, particles.state.positions.size(), surface(), shown_surface);
@@ -153,6 +161,16 @@ void FrameLoop::record() {
   if (row.reextractions > 0)
     log_.detail(fmt::format("frame {}: surface extracted anew {} time(s): {}", frame_, row.reextractions,
                             table_.statistics().last_reason()));
+}
+
+/// Once a run, for recorded particles, whose spacing may be a guess.
+void FrameLoop::doubt_first_surface() {
+  if (!surface_ || scene_.particles.source != scenes::ParticlesSpec::Source::recorded) return;
+  if (std::any_of(table_.rows().begin(), table_.rows().end(), [](const FrameRow& row) { return row.vertices > 0; }))
+    return;
+  const std::size_t particles = nearer_state(source_->state()).positions.size();
+  for (const std::string& doubt : surface_doubts(surface_->tracker().mesh(), particles, source_->spacing()))
+    log_.warning("warning: " + doubt);
 }
 
 /// Whether a signal has come.
@@ -243,9 +261,15 @@ void FrameLoop::finish() {
     for (const std::string& line : comparison_->ranking()) log_.info(line);
   scenes::sync_file_system(directory_.root());
   checkpoints_.mark_complete(scene_.frames);
+  const std::string empty = surface_ ? empty_frames(table_.rows()) : "";
+  if (!empty.empty()) log_.warning("warning: " + empty);
   log_.info("done: " + directory_.root().string());
   if (!log_.failure().empty()) log_.warning("log.txt is not complete: " + log_.failure());
   recorder_.finish(scene_.frames);
+  if (surface_ &&
+      std::all_of(table_.rows().begin(), table_.rows().end(), [](const FrameRow& row) { return row.vertices == 0; }))
+    throw RunError("no frame has a surface: " +
+                   why_no_surface(table_.rows(), nearer_state(source_->state()).positions, source_->spacing()));
 }
 
 }  // namespace flowskin::tools

@@ -56,6 +56,7 @@ class FrameLoop {
   void advance();
   void step_to(double time);
   void record();
+  void doubt_first_surface();
   bool is_to_pause() const;
   void pause();
   void save();

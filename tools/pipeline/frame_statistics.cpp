@@ -23,6 +23,9 @@ void describe_source(const scenes::ParticleSource& source, FrameRow& row) {
   row.left_domain = statistics.left_domain;
   row.emitted = statistics.emitted;
   row.drained = statistics.drained;
+  row.not_wanted = statistics.not_wanted;
+  row.skipped_invalid = statistics.skipped_invalid;
+  row.skipped_duplicates = statistics.skipped_duplicates;
   row.wall_crossings = statistics.wall_crossings;
   row.kept_out_of_gaps = statistics.kept_out_of_gaps;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/errors.h"
+#include "common/outliers.h"
 #include "scenes/scene_checks.h"
 #include "scenes/scene_file.h"
 #include "scenes/sources/make_source.h"
@@ -47,7 +48,7 @@ RunStart start_run(scenes::Scene scene, const RunOptions& options) {
                     "such as affine, or record velocities",
                     tracking.velocity));
   if (start.scene.texture.rest_size <= 0) {
-    const RestFrame rest = rest_frame(state.rest_positions);
+    const RestFrame rest = rest_frame(without_outliers(state.rest_positions, kPictureMargin * start.source->spacing()));
     start.scene.texture.rest_center = rest.center;
     start.scene.texture.rest_size = rest.size;
   }
