@@ -71,6 +71,12 @@ std::string write_scene(const Scene& scene) {
   return write_object(keys, 0) + "\n";
 }
 
+void set_tracking_key(TrackingSpec& tracking, const std::string& key, const std::string& value) {
+  KeyTable keys;
+  add_tracking_keys(keys, tracking);
+  set_key(keys, "tracking." + key, value);
+}
+
 std::vector<SceneKey> scene_keys() {
   Scene untouched;
   KeyTable keys;

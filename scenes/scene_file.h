@@ -18,6 +18,9 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::f
 /// The scene with every key written out, readable by read_scene; file names are written absolute, so that the file can
 /// stand anywhere.
 std::string write_scene(const Scene& scene);
+/// Sets a key of the section "tracking" (its name alone) to a value as it would stand in a scene file; quotes may be
+/// left out. @throws InputError with what was expected, where there is no such key or it takes no such value.
+void set_tracking_key(TrackingSpec& tracking, const std::string& key, const std::string& value);
 /// All keys in the order of the file.
 std::vector<SceneKey> scene_keys();
 

@@ -105,6 +105,18 @@ std::string write_sections(const std::vector<WrittenKey>& keys, int indent) {
   return text + (keys.empty() ? "}" : fmt::format("\n{:{}}}}", "", indent));
 }
 
+/// What is no JSON is a text.
+JsonNode bare_value(const std::string& value) {
+  try {
+    return parse_json(value, "value");
+  } catch (const InputError&) {
+    JsonNode node;
+    node.type = JsonNode::Type::text;
+    node.text = value;
+    return node;
+  }
+}
+
 void read_key(const Key& key, const JsonNode& value, const std::string& path, Problems& problems) {
   try {
     key.value->read(value, path, problems);
@@ -165,6 +177,24 @@ void read_object(const JsonNode& node, const KeyTable& table, const std::string&
                                             type_and_unit(key.value->type(), key.unit), key.meaning));
     }
   }
+}
+
+void set_key(const KeyTable& table, const std::string& path, const std::string& value) {
+  std::vector<std::string> paths;
+  for (const Key& key : table.keys()) {
+    paths.push_back(key.path);
+    if (key.path != path) continue;
+    Problems problems(path, value);
+    try {
+      key.value->read(bare_value(value), path, problems);
+    } catch (const Mismatch& mismatch) {
+      throw InputError(mismatch_message(path, mismatch, key.value->type(), key.unit));
+    }
+    problems.throw_if_any();
+    return;
+  }
+  const std::string section = path.substr(0, path.rfind('.') + 1);
+  throw InputError(path + ": there is no such key" + suggestion(last_part(path), section, paths));
 }
 
 std::string write_object(const KeyTable& table, int indent) {

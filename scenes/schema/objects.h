@@ -40,6 +40,9 @@ inline std::string join_path(const std::string& object, const std::string& key) 
 /// values.
 void read_object(const JsonNode& node, const KeyTable& table, const std::string& path, Problems& problems);
 
+/// Sets the key `path` to a value as it would stand in a file; quotes may be left out. @throws InputError
+void set_key(const KeyTable& table, const std::string& path, const std::string& value);
+
 /// The keys that apply as a JSON object.
 std::string write_object(const KeyTable& table, int indent);
 

@@ -7,6 +7,7 @@
 #include "common/errors.h"
 #include "scenes/sources/make_source.h"
 #include "tests/tools/io_fixture.h"
+#include "tools/pipeline/compared_method.h"
 #include "tools/pipeline/comparison.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/report/compare_report.h"
@@ -16,14 +17,53 @@ namespace {
 
 using Names = std::vector<std::string>;
 
+Names names_of(const std::string& list) {
+  Names names;
+  for (const ComparedMethod& method : methods_to_compare(list)) names.push_back(method.name);
+  return names;
+}
+
 TEST(CompareMethods, AreThoseNamedOnceEach) {
-  EXPECT_EQ(methods_to_compare(""), Names{});
-  EXPECT_EQ(methods_to_compare("total"), Names{"total"});
-  EXPECT_EQ(methods_to_compare("total,normal,total"), (Names{"total", "normal"}));
-  const Names all = methods_to_compare("all");
+  EXPECT_EQ(names_of(""), Names{});
+  EXPECT_EQ(names_of("total"), Names{"total"});
+  EXPECT_EQ(names_of("total,normal,total"), (Names{"total", "normal"}));
+  const Names all = names_of("all");
   EXPECT_EQ(all.size(), tracking::velocity_methods().size() - 1);
   EXPECT_EQ(std::count(all.begin(), all.end(), "curvature-belyaev"), 0);
-  EXPECT_EQ(methods_to_compare("curvature-belyaev,all").size(), all.size() + 1);
+  EXPECT_EQ(names_of("curvature-belyaev,all").size(), all.size() + 1);
+}
+
+TEST(CompareMethods, TakeSettingsOfTheirOwn) {
+  const auto methods = methods_to_compare("hybrid,hybrid:fairing=0,affine:integrator=rk4:edge_length=0.8");
+  ASSERT_EQ(methods.size(), 3u);
+  scenes::Scene scene;
+  scene.particles.spacing = 0.1;
+  const tracking::TrackerSettings usual = settings_for(scene, methods[0]), unfaired = settings_for(scene, methods[1]),
+                                  finer = settings_for(scene, methods[2]);
+  EXPECT_EQ(methods[1].name, "hybrid:fairing=0");
+  EXPECT_EQ(usual.velocity, "hybrid");
+  EXPECT_EQ(unfaired.velocity, "hybrid");
+  EXPECT_GT(usual.fairing_iterations, 0);
+  EXPECT_EQ(unfaired.fairing_iterations, 0);
+  EXPECT_EQ(finer.velocity, "affine");
+  EXPECT_EQ(finer.integrator, tracking::Integrator::rk4);
+  EXPECT_DOUBLE_EQ(finer.edge_length, 0.08);
+}
+
+TEST(CompareMethods, WrongSettingsAreAnswered) {
+  const auto says = [](const std::string& list, const std::string& words) {
+    const std::string message = message_of<InputError>([&] { methods_to_compare(list); });
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+    EXPECT_NE(message.find("--compare"), std::string::npos) << message;
+  };
+  says("hybrid:fairing", "KEY=VALUE");
+  says("hybrid:", "KEY=VALUE");
+  says("hybrid:=3", "KEY=VALUE");
+  says("hybrid:fairing=-1", "expected");
+  says("hybrid:integrator=rk5", "rk4");
+  says("hybrid:integratr=rk4", "integrator");
+  says("hybrid:max_slip=1", "same for all");
+  says("hybrid:threshold=1", "same for all");
 }
 
 TEST(CompareMethods, UnknownNamesAreAnswered) {
@@ -188,7 +228,7 @@ TEST_F(CompareFiles, NoMethodIsHelpedByMaxSlip) {
     const tracking::Particles start = to_particles(source->state());
     tracking::Tracker own(scenes::settings_in_metres(scene), start);
     StageClock clock;
-    Comparison comparison(scene, directory, {"normal", "affine"}, own, start, clock);
+    Comparison comparison(scene, directory, methods_to_compare("normal,affine"), own, start, clock);
     for (int frame = 1; frame <= 3; ++frame) {
       source->advance_to(0.1 * frame);
       const tracking::Particles particles = to_particles(source->state());

@@ -19,8 +19,8 @@ Command run_command() {
       {"--frames", &run.frames, "Number of frames after the first (default: the scene's)", {.range = {{0, 1000000}}}},
       velocity_option(run.velocity, "the scene's"),
       {"--compare", &run.compare,
-       "Carry one mesh for each of these velocity methods (comma separated, or all) and measure their errors; see "
-       "docs/compare.md"},
+       "Carry one mesh for each of these velocity methods (comma separated, or all) and measure their errors; with "
+       "settings of its own: hybrid:fairing=0:integrator=rk4; see docs/compare.md"},
       threads_option(run.threads),
       {"--resume", &run.resume,
        "Go on from the last checkpoint in the run directory, as if the run had never stopped; see docs/restart.md"},

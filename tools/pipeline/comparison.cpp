@@ -1,11 +1,10 @@
 #include "tools/pipeline/comparison.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <utility>
 
-#include "common/errors.h"
 #include "tools/pipeline/method_measures.h"
 #include "tools/pipeline/tracker_bridge.h"
 #include "tools/render/video.h"
@@ -14,74 +13,26 @@
 namespace flowskin::tools {
 namespace {
 
-constexpr const char* kAll = "all";
-constexpr const char* kTwin = "curvature-belyaev";  // the same velocity by another formula
-constexpr const char* kOthers = "other methods";    // stage of the clock
-constexpr double kReachInSpacings = 2;              // of closest points
-
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
-/// The words between the commas; none of an empty text.
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin < list.size() || (begin > 0 && begin == list.size());) {
-    const std::size_t comma = std::min(list.find(',', begin), list.size());
-    words.push_back(list.substr(begin, comma - begin));
-    begin = comma + 1;
-  }
-  return words;
-}
-
-/// Those of the scene, but for the method, and with a texture that slips freely: one that is held on the particles
-/// would show what they do, not what the method does.
-tracking::TrackerSettings settings_for(const scenes::Scene& scene, const std::string& method) {
-  tracking::TrackerSettings settings = scenes::settings_in_metres(scene);
-  settings.velocity = method;
-  settings.max_slip = 0;
-  return settings;
-}
+constexpr const char* kOthers = "other methods";  // stage of the clock
+constexpr double kReachInSpacings = 2;            // of closest points
 
 /// Whether the mesh of the scene's own run is the one that this method is to be judged by.
-bool serves_for(const std::string& method, const tracking::TrackerSettings& settings) {
-  return method == settings.velocity && settings.max_slip == 0;
+bool serves_for(const ComparedMethod& method, const tracking::TrackerSettings& settings) {
+  return method.settings.empty() && method.velocity == settings.velocity && settings.max_slip == 0;
 }
 
 }  // namespace
 
-std::vector<std::string> methods_to_compare(const std::string& list) {
-  std::vector<std::string> known, methods;
-  for (const auto& method : tracking::velocity_methods()) known.push_back(method.name);
-  const auto add = [&methods](const std::string& name) {
-    if (std::find(methods.begin(), methods.end(), name) == methods.end()) methods.push_back(name);
-  };
-  for (const std::string& name : split(list)) {
-    if (name == kAll) {
-      for (const std::string& method : known)
-        if (method != kTwin) add(method);
-    } else if (std::find(known.begin(), known.end(), name) != known.end()) {
-      add(name);
-    } else {
-      throw InputError(fmt::format("--compare: there is no velocity method \"{}\"; expected some of {}, or all", name,
-                                   listed(known)));
-    }
-  }
-  return methods;
-}
-
 Comparison::Comparison(const scenes::Scene& scene, const RunDirectory& directory,
-                       const std::vector<std::string>& methods, const tracking::Tracker& scene_tracker,
+                       const std::vector<ComparedMethod>& methods, const tracking::Tracker& scene_tracker,
                        const tracking::Particles& start, StageClock& clock)
     : scene_(scene),
       directory_(directory),
       scene_max_slip_(scene_tracker.settings().max_slip),
       truth_(scene, scene_tracker.settings(), start),
       clock_(clock) {
-  for (const std::string& method : methods) {
-    Entry& entry = entries_.emplace_back(Entry{method, nullptr, &scene_tracker, {}});
+  for (const ComparedMethod& method : methods) {
+    Entry& entry = entries_.emplace_back(Entry{method.name, nullptr, &scene_tracker, {}});
     if (serves_for(method, scene_tracker.settings())) continue;
     clock_.time(kOthers, [&] { entry.own = std::make_unique<tracking::Tracker>(settings_for(scene, method), start); });
     entry.tracker = entry.own.get();
@@ -89,16 +40,18 @@ Comparison::Comparison(const scenes::Scene& scene, const RunDirectory& directory
   truth_.start_markers(scene_tracker.mesh());
 }
 
+std::vector<std::string> Comparison::names() const {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries_) names.push_back(entry.method);
+  return names;
+}
+
 void Comparison::make_pictures(const Image& texture, const sph::Box& fluid) {
-  std::vector<std::string> methods;
-  for (const Entry& entry : entries_) methods.push_back(entry.method);
-  pictures_ = std::make_unique<ComparisonPictures>(directory_, scene_, texture, fluid, methods);
+  pictures_ = std::make_unique<ComparisonPictures>(directory_, scene_, texture, fluid, names());
 }
 
 std::string Comparison::description() const {
-  std::vector<std::string> methods;
-  for (const Entry& entry : entries_) methods.push_back(entry.method);
-  std::string text = fmt::format("comparing {} with {} markers that ride {}; {}", listed(methods),
+  std::string text = fmt::format("comparing {} with {} markers that ride {}; {}", fmt::join(names(), ", "),
                                  truth_.markers().ids.size(), truth_.description(), kSlipFreely);
   if (scene_max_slip_ > 0)
     text += fmt::format(" (the surface that is written is held within max_slip = {:.4g} m and is not among them)",

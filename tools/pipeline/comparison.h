@@ -8,6 +8,7 @@
 
 #include "scenes/scene.h"
 #include "tools/frame_data.h"
+#include "tools/pipeline/compared_method.h"
 #include "tools/pipeline/comparison_pictures.h"
 #include "tools/pipeline/ground_truth.h"
 #include "tools/pipeline/run_directory.h"
@@ -19,11 +20,6 @@
 
 namespace flowskin::tools {
 
-/// The methods of `--compare NAME,NAME,...`, none for an empty text: "all" stands for all but those that only check
-/// another one (curvature-belyaev); one named twice counts once. @throws InputError naming the valid ones, where one is
-/// unknown
-std::vector<std::string> methods_to_compare(const std::string& list);
-
 class Comparison {
  public:
   /// @param methods as methods_to_compare gives them; at least one
@@ -31,7 +27,7 @@ class Comparison {
   /// that is among the methods and its max_slip is 0, it serves for it. Must outlive this. @param start the particles
   /// at the start, which the scene's tracker has seen.
   /// @param clock gets the time that all this takes
-  Comparison(const scenes::Scene& scene, const RunDirectory& directory, const std::vector<std::string>& methods,
+  Comparison(const scenes::Scene& scene, const RunDirectory& directory, const std::vector<ComparedMethod>& methods,
              const tracking::Tracker& scene_tracker, const tracking::Particles& start, StageClock& clock);
 
   /// Small pictures in images/ as well.
@@ -59,7 +55,7 @@ class Comparison {
 
  private:
   struct Entry {
-    std::string method;
+    std::string method;                      ///< Name of what is compared.
     std::unique_ptr<tracking::Tracker> own;  ///< null: the scene's tracker
     const tracking::Tracker* tracker;
     CompareRow counts;  ///< What adds up over a frame.
@@ -70,6 +66,7 @@ class Comparison {
       if (own) visit_tracker(archive, *own);
     }
   };
+  std::vector<std::string> names() const;
   void measure_all(int frame);
   void draw(int frame, const RestFrame& rest, const ParticleFrame& particles);
 
