@@ -20,9 +20,10 @@ struct ParticleTable {
   std::map<std::string, std::vector<std::uint64_t>> ids;
   /// What is wrong with a column, and where; the values in question are NaN. It only stops who needs the column.
   std::map<std::string, std::string> faults;
-  std::optional<double> time;  ///< s
-  double radius = 0;           ///< Of all particles (m); 0 where the file does not say.
-  std::size_t polygons = 0;    ///< Faces of a mesh: then these are no particles.
+  std::optional<double> time;         ///< s
+  std::optional<std::uint64_t> step;  ///< The number of the time step, where the file counts steps.
+  double radius = 0;                  ///< Of all particles (m); 0 where the file does not say.
+  std::size_t polygons = 0;           ///< Faces of a mesh: then these are no particles.
 };
 
 /// Where the faults of a column begin is what counts.
