@@ -160,6 +160,21 @@ std::vector<ParticleTable> parse_json_particles(std::string_view bytes, const st
   return JsonParticles(name).steps(root);
 }
 
+bool is_json_particles(std::string_view bytes) {
+  const Json root = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  if (root.is_array()) return true;
+  if (!root.is_object()) return false;
+  const auto holds_places = [](const Json& object) {
+    if (object.is_array()) return true;
+    for (const auto& [key, value] : object.items())
+      if (value.is_array() && (names_positions({key + "x", key + "y"}) || key == "x")) return true;
+    return false;
+  };
+  for (const char* key : {"particles", "points", "frames", "steps", "timesteps"})
+    if (root.contains(key) && root[key].is_structured() && holds_places(root[key])) return true;
+  return holds_places(root);
+}
+
 bool is_file_series(std::string_view bytes) {
   return bytes.substr(0, 4096).find("\"file-series-version\"") != std::string_view::npos;
 }

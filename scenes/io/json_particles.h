@@ -16,6 +16,9 @@ namespace flowskin::scenes {
 /// @throws InputError naming the place and what was expected.
 std::vector<ParticleTable> parse_json_particles(std::string_view bytes, const std::string& name);
 
+/// Whether the text is JSON with particles in it, and no scene.
+bool is_json_particles(std::string_view bytes);
+
 /// A series of files as ParaView writes it beside VTK files (.vtk.series): time (s; numbered where it has none) and
 /// name of each. @throws InputError where the text is none.
 std::vector<std::pair<double, std::string>> parse_file_series(std::string_view bytes, const std::string& name);

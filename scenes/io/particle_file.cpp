@@ -28,9 +28,9 @@
 namespace flowskin::scenes {
 namespace {
 
-constexpr std::array<const char*, 19> extensions{".csv",  ".txt",       ".tsv",  ".ply",  ".vtk",   ".vtp",    ".vtu",
-                                                 ".pvtp", ".pvtu",      ".bgeo", ".dump", ".xyz",   ".extxyz", ".npy",
-                                                 ".npz",  ".lammpstrj", ".h5",   ".hdf5", ".vtkhdf"};
+constexpr std::array<const char*, 21> extensions{
+    ".csv",  ".txt",       ".tsv", ".ply",    ".vtk", ".vtp", ".vtu", ".pvtp", ".pvtu",   ".bgeo",  ".bhclassic",
+    ".dump", ".lammpstrj", ".xyz", ".extxyz", ".npy", ".npz", ".h5",  ".hdf5", ".h5part", ".vtkhdf"};
 
 /// So much of a file tells its format.
 constexpr std::size_t telling_bytes = 4096;

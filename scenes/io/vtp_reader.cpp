@@ -48,6 +48,12 @@ struct Array {
   std::string_view text;                ///< between its tags
 };
 
+/// The faces of a piece, as corners and the end of each face among them.
+struct Polygons {
+  std::uint64_t count = 0, points = 0, first_point = 0;
+  std::optional<Array> corners, ends;
+};
+
 class VtpParser {
  public:
   VtpParser(std::string_view bytes, const std::string& name)
@@ -64,6 +70,7 @@ class VtpParser {
     if (!open_.empty())
       scanner_.fail(head_.size(), fmt::format("<{}> is never closed: the file is truncated", open_.back()));
     check_columns();
+    for (const Polygons& polygons : polygons_) add_triangles(polygons);
     table_.format = fmt::format("VTK XML ({}{}{})",
                                 encoding_.compressor == Compressor::none   ? ""
                                 : encoding_.compressor == Compressor::zlib ? "zlib, "
@@ -153,7 +160,34 @@ class VtpParser {
     table_.count += static_cast<std::size_t>(piece_points_);
     table_.polygons += static_cast<std::size_t>(count_of(tag, "NumberOfPolys", 0, most_points) +
                                                 count_of(tag, "NumberOfStrips", 0, most_points));
+    polygons_.push_back({count_of(tag, "NumberOfPolys", 0, most_points), piece_points_,
+                         table_.count - static_cast<std::size_t>(piece_points_), std::nullopt, std::nullopt});
     has_piece_ = true;
+  }
+
+  /// Cuts polygons into fans.
+  void add_triangles(const Polygons& polygons) {
+    if (polygons.count == 0 || !polygons.corners || !polygons.ends) return;
+    const std::vector<double> ends = numbers_of(*polygons.ends, polygons.count);
+    const double corner_count = ends.back();
+    if (!(corner_count >= 0 && corner_count <= static_cast<double>(most_points)))
+      scanner_.fail(polygons.ends->start, "the faces of the mesh end nowhere");
+    const std::vector<double> corners = numbers_of(*polygons.corners, static_cast<std::uint64_t>(corner_count));
+    std::size_t start = 0;
+    for (const double face_end : ends) {
+      if (!(face_end >= static_cast<double>(start) && face_end <= corner_count))
+        scanner_.fail(polygons.ends->start, "the faces of the mesh overlap");
+      const auto end = static_cast<std::size_t>(face_end);
+      const auto corner = [&](std::size_t place) {
+        const double index = corners[place];
+        if (!(index >= 0 && index < static_cast<double>(polygons.points)))
+          scanner_.fail(polygons.corners->start, fmt::format("a face has the corner {}, which is no point", index));
+        return static_cast<int>(polygons.first_point + static_cast<std::uint64_t>(index));
+      };
+      for (std::size_t k = start + 1; k + 1 < end; ++k)
+        table_.triangles.push_back({corner(start), corner(k), corner(k + 1)});
+      start = end;
+    }
   }
 
   Array described(const XmlTag& tag) const {
@@ -191,6 +225,9 @@ class VtpParser {
       add_columns(points, {"x", "y", "z"});
     } else if (inside("PointData")) {
       read_attribute(tag);
+    } else if (inside("Polys") && name && !polygons_.empty()) {
+      if (*name == "connectivity") polygons_.back().corners = described(tag);
+      if (*name == "offsets") polygons_.back().ends = described(tag);
     }
   }
 
@@ -319,6 +356,7 @@ class VtpParser {
   bool has_root_ = false, has_piece_ = false;
   VtkEncoding encoding_;
   std::uint64_t piece_points_ = 0;
+  std::vector<Polygons> polygons_;
   std::string formats_;
   ParticleTable table_;
 };

@@ -47,6 +47,19 @@ ParticleNeeds needs_of(const RecordedSpec& spec) {
   return needs;
 }
 
+using Entries = std::vector<std::pair<double, std::filesystem::path>>;
+
+/// Time and file of each entry of a .pvd or .vtk.series, whatever it is called; none where the file is another one.
+Entries entries_of_collection(const std::filesystem::path& file) {
+  if (!is_collection(file)) return {};
+  const std::string bytes = read_bytes(file);
+  if (!is_file_series(bytes)) return parse_pvd(bytes, file);
+  Entries entries;
+  for (auto& [time, name] : parse_file_series(bytes, file.string()))
+    entries.emplace_back(time, file.parent_path() / name);
+  return entries;
+}
+
 /// What a look at each file tells.
 struct Census {
   std::vector<double> times;  // empty where some file tells none
@@ -71,7 +84,8 @@ class SequenceOpener {
           "a single frame: its surface is made, {}",
           sequence_.first.has_velocities ? "moving as the velocities in the file say" : "and its velocity is zero"));
     const bool wants_times = file_times_.empty() && spec_.frame_interval == 0 && table.time.has_value();
-    const bool wants_ids = sequence_.places.size() > 1 && spec_.ids == RecordedSpec::Ids::automatic && !sequence_.first.has_ids;
+    const bool wants_ids =
+        sequence_.places.size() > 1 && spec_.ids == RecordedSpec::Ids::automatic && !sequence_.first.has_ids;
     const Census census = wants_times || wants_ids ? look_at_all(whole_count(table)) : Census{};
     settle_times(wants_times ? census.times : std::vector<double>{}, table.time.has_value());
     settle_ids(census);
@@ -91,23 +105,6 @@ class SequenceOpener {
   }
 
  private:
-  using Entries = std::vector<std::pair<double, std::filesystem::path>>;
-
-  /// Time and file of each entry of a .pvd or .vtk.series, whatever it is called; none where the file is another one.
-  static Entries entries_of_collection(const std::filesystem::path& file) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) return {};
-    const std::string start = first_bytes(file, 4096);
-    if (start.find("\"Collection\"") != std::string::npos || start.find("<Collection") != std::string::npos ||
-        file.extension() == ".pvd")
-      return parse_pvd(read_bytes(file), file);
-    if (!is_file_series(start)) return {};
-    Entries entries;
-    for (auto& [time, name] : parse_file_series(read_bytes(file), file.string()))
-      entries.emplace_back(time, file.parent_path() / name);
-    return entries;
-  }
-
   /// A single .pvd or .vtk.series names the files and their times. Files of one time are parts of one frame.
   bool take_collection() {
     if (spec_.files.size() != 1) return false;
@@ -338,6 +335,15 @@ class SequenceOpener {
 };
 
 }  // namespace
+
+bool is_collection(const std::filesystem::path& file) {
+  constexpr std::size_t telling = 4096;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return false;
+  const std::string start = first_bytes(file, telling);
+  return start.find("\"Collection\"") != std::string::npos || start.find("<Collection") != std::string::npos ||
+         file.extension() == ".pvd" || is_file_series(start);
+}
 
 ParticleSequence open_sequence(const RecordedSpec& spec, const std::string& directory) {
   return SequenceOpener(spec, directory).open();
