@@ -40,6 +40,16 @@ endif()
 add_library(flowskin_cairo INTERFACE)
 target_link_libraries(flowskin_cairo INTERFACE PkgConfig::FLOWSKIN_CAIRO)
 
+# LZ4 and HDF5, for particle files. Debian parts HDF5 by whether it is for one machine.
+pkg_check_modules(FLOWSKIN_LZ4 QUIET IMPORTED_TARGET liblz4)
+if(NOT FLOWSKIN_LZ4_FOUND)
+  flowskin_missing("LZ4" liblz4-dev)
+endif()
+pkg_search_module(FLOWSKIN_HDF5 QUIET IMPORTED_TARGET hdf5-serial hdf5)
+if(NOT FLOWSKIN_HDF5_FOUND)
+  flowskin_missing("HDF5" libhdf5-dev)
+endif()
+
 if(FLOWSKIN_TESTS)
   flowskin_find(GTest "libgtest-dev libgmock-dev")
   if(NOT TARGET GTest::gmock)

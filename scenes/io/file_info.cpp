@@ -4,16 +4,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <functional>
 #include <stdexcept>
 
 #include "common/errors.h"
+#include "common/number_text.h"
 #include "scenes/io/frames.h"
 #include "scenes/io/obj_reader.h"
 #include "scenes/io/particle_file.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/io/read_bytes.h"
+#include "scenes/sources/particle_sequence.h"
 #include "scenes/sources/particle_spacing.h"
 #include "tracking/mesh/mesh_check.h"
 #include "tracking/mesh/mesh_measures.h"
@@ -24,6 +25,11 @@ namespace {
 
 using Positions = std::vector<Vec3>;
 using Triangles = std::vector<tracking::Triangle>;
+
+/// Bytes at the start of a file that tell what it is.
+constexpr std::size_t telling_start = 1 << 16;
+/// Lines of an OBJ file within which its kind shows.
+constexpr std::size_t most_obj_head = 1000;
 
 std::string bounds_line(const Positions& positions) {
   Vec3 low = positions[0], high = positions[0];
@@ -41,12 +47,13 @@ std::string property_line(const std::map<std::string, std::vector<double>>& colu
   return "properties: " + names;
 }
 
-Positions vertex_positions(const PlyFile& ply, const std::string& name) {
-  Positions positions(ply.vertex_count);
+Positions vertex_positions(const std::map<std::string, std::vector<double>>& columns, std::size_t count,
+                           const std::string& name) {
+  Positions positions(count);
   constexpr std::array<const char*, 3> axes{"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
-    const auto column = ply.vertex.find(axes[k]);
-    if (column == ply.vertex.end()) throw InputError(name + ": no vertex property \"" + axes[k] + "\"");
+    const auto column = columns.find(axes[k]);
+    if (column == columns.end()) throw InputError(name + ": no vertex property \"" + axes[k] + "\"");
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i][k] = column->second[i];
   }
   return positions;
@@ -128,33 +135,88 @@ void describe_particles(FileInfo& info, const std::string& name, const ParticleT
 
 }  // namespace
 
-FileInfo describe_file(const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::exists(file, error)) require_regular_file(file);
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+namespace {
+
+/// Whether a text is an OBJ mesh: a line of a face, and nothing in front but words that OBJ files have.
+bool is_obj(std::string_view text) {
+  constexpr std::array<std::string_view, 10> words{"v", "vt", "vn", "vp", "f", "o", "g", "s", "mtllib", "usemtl"};
+  for (std::size_t lines = 0; !text.empty() && lines < most_obj_head; ++lines) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    const std::string_view word = take_word(line);
+    if (word.empty() || word.starts_with('#')) continue;
+    if (std::find(words.begin(), words.end(), word) == words.end()) return false;
+    if (word == "f" || word == "mtllib") return true;
+  }
+  return text.find("\nf ") != std::string_view::npos;
+}
+
+FileInfo describe_ply(const PlyFile& ply, const std::string& name) {
   FileInfo info;
-  if (extension == ".obj") {
+  if (ply.triangles.empty()) {
+    describe_particles(info, name, table_from_ply(ply));
+  } else {
+    describe_surface(info, vertex_positions(ply.vertex, ply.vertex_count, name), ply.triangles);
+    info.lines.insert(info.lines.begin() + 1, property_line(ply.vertex));
+  }
+  return info;
+}
+
+void describe_steps(FileInfo& info, const std::vector<ParticleTable>& steps) {
+  if (steps.size() < 2) return;
+  std::string line = fmt::format("time steps: {}", steps.size());
+  if (steps.front().time && steps.back().time)
+    line += fmt::format(", {:.6g} to {:.6g} s", *steps.front().time, *steps.back().time);
+  if (steps.front().step && steps.back().step)
+    line += fmt::format(", numbered {} to {}", *steps.front().step, *steps.back().step);
+  info.lines.push_back(line + "; of the first:");
+}
+
+/// A mesh that is written as points and faces.
+void describe_mesh(FileInfo& info, const std::string& name, const ParticleTable& table) {
+  if (table.triangles.empty())
+    throw InputError(fmt::format("{}: a mesh with {} polygons; of meshes, OBJ, PLY and VTP files can be looked at",
+                                 name, table.polygons));
+  describe_surface(info, vertex_positions(table.columns, table.count, name), table.triangles);
+  info.lines.insert(info.lines.begin() + 1, property_line(table.columns));
+}
+
+}  // namespace
+
+FileInfo describe_file(const std::filesystem::path& file) {
+  const std::string start = first_bytes(file, telling_start);
+  FileInfo info;
+  if (start.starts_with("ply\n") || start.starts_with("ply\r")) return describe_ply(read_ply(file), file.string());
+  if (file.extension() == ".obj" || is_obj(start)) {
     const sph::TriangleMesh mesh = read_obj(file);
     describe_surface(info, mesh.positions, mesh.triangles);
-  } else if (extension == ".ply") {
-    const PlyFile ply = read_ply(file);
-    if (ply.triangles.empty()) {
-      describe_particles(info, file.string(), table_from_ply(ply));
-    } else {
-      describe_surface(info, vertex_positions(ply, file.string()), ply.triangles);
-      info.lines.insert(info.lines.begin() + 1, property_line(ply.vertex));
-    }
-  } else if (is_particle_extension(extension)) {
-    const ParticleTable table = read_particle_table(file);
-    if (table.polygons > 0)
-      throw InputError(fmt::format("{}: a mesh with {} polygons; of meshes, OBJ and PLY files can be looked at",
-                                   file.string(), table.polygons));
-    describe_particles(info, file.string(), table);
-  } else {
-    throw InputError(file.string() +
-                     ": expected an OBJ, PLY or particle (CSV, VTK, VTP) file (by the end of its name)");
+    return info;
+  }
+  const std::vector<ParticleTable> steps = read_particle_steps(file);
+  describe_steps(info, steps);
+  if (steps.front().polygons > 0)
+    describe_mesh(info, file.string(), steps.front());
+  else
+    describe_particles(info, file.string(), steps.front());
+  return info;
+}
+
+FileInfo describe_sequence(const std::filesystem::path& place) {
+  RecordedSpec spec;
+  spec.files = {std::filesystem::absolute(place).string()};
+  std::vector<std::filesystem::path> files = sequence_files(spec, "");
+  std::erase(files, std::filesystem::path(spec.files.front()));
+  FileInfo info;
+  info.lines.push_back(fmt::format("sequence: {} files, {} to {}; of the first:", files.size(),
+                                   files.front().filename().string(), files.back().filename().string()));
+  const FileInfo first = describe_file(files.front());
+  info.sound = first.sound;
+  info.lines.insert(info.lines.end(), first.lines.begin(), first.lines.end());
+  for (const std::filesystem::path& file : files) {
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) continue;
+    info.sound = false;
+    info.lines.push_back(fmt::format("missing: {}", file.string()));
   }
   return info;
 }

@@ -42,7 +42,8 @@ using Columns = std::map<std::string, NamedColumn>;
 const Names position_names = {"", "position", "positions", "pos", "points", "point", "p", "coordinates", "coords"};
 const Names velocity_names = {"v", "velocity", "velocities", "vel"};
 const Names rest_names = {"rest", "rest_position", "rest_positions", "restposition"};
-const Names id_names = {"id", "ids", "particle_id", "particle_ids", "particleid", "idp", "globalids", "global_id"};
+const Names id_names = {"id",          "ids", "particle_id", "particle_ids", "particleid",
+                        "particleids", "idp", "globalids",   "global_id"};
 const Names radius_names = {"radius", "radii", "particle_radius", "pscale"};
 const Names density_names = {"density", "densities", "rho", "rhop"};
 

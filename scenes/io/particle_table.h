@@ -1,6 +1,7 @@
 // What a particle file holds, whatever its format: columns of numbers by name.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -20,9 +21,11 @@ struct ParticleTable {
   std::map<std::string, std::vector<std::uint64_t>> ids;
   /// What is wrong with a column, and where; the values in question are NaN. It only stops who needs the column.
   std::map<std::string, std::string> faults;
-  std::optional<double> time;  ///< s
-  double radius = 0;           ///< Of all particles (m); 0 where the file does not say.
-  std::size_t polygons = 0;    ///< Faces of a mesh: then these are no particles.
+  std::optional<double> time;                 ///< s
+  std::optional<std::uint64_t> step;          ///< The number of the time step, where the file counts steps.
+  double radius = 0;                          ///< Of all particles (m); 0 where the file does not say.
+  std::size_t polygons = 0;                   ///< Faces of a mesh: then these are no particles.
+  std::vector<std::array<int, 3>> triangles;  ///< These faces as triangles, where the format is VTK XML.
 };
 
 /// Where the faults of a column begin is what counts.

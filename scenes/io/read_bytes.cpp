@@ -38,6 +38,14 @@ double memory_of_machine() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
+using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+Stream opened(const fs::path& file) {
+  Stream stream(std::fopen(file.c_str(), "rb"), &std::fclose);
+  if (!stream) throw InputError(file.string() + ": cannot be opened: " + std::generic_category().message(errno));
+  return stream;
+}
+
 }  // namespace
 
 void require_regular_file(const fs::path& file) {
@@ -61,8 +69,7 @@ std::string read_bytes(const fs::path& file, std::uintmax_t most) {
                                  static_cast<double>(size) / 1e6,
                                  size > most ? fmt::format("the {:.4g} MB allowed", static_cast<double>(most) / 1e6)
                                              : "the memory of this machine"));
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(name.c_str(), "rb"), &std::fclose);
-  if (!stream) throw InputError(name + ": cannot be opened: " + std::generic_category().message(errno));
+  const Stream stream = opened(file);
   std::string bytes;
   if (!ignored) bytes.reserve(static_cast<std::size_t>(size) + 1);
   std::array<char, 1 << 16> block{};
@@ -72,6 +79,14 @@ std::string read_bytes(const fs::path& file, std::uintmax_t most) {
   }
   if (std::ferror(stream.get()) != 0)
     throw InputError(name + ": cannot be read: " + std::generic_category().message(errno));
+  return bytes;
+}
+
+std::string first_bytes(const fs::path& file, std::size_t count) {
+  require_regular_file(file);
+  const Stream stream = opened(file);
+  std::string bytes(count, '\0');
+  bytes.resize(std::fread(bytes.data(), 1, count, stream.get()));
   return bytes;
 }
 

@@ -17,4 +17,7 @@ void require_regular_file(const std::filesystem::path& file);
 std::string read_bytes(const std::filesystem::path& file,
                        std::uintmax_t most = std::numeric_limits<std::uintmax_t>::max());
 
+/// The first bytes of `file`, at most `count`. @throws InputError as read_bytes().
+std::string first_bytes(const std::filesystem::path& file, std::size_t count);
+
 }  // namespace flowskin::scenes

@@ -1,13 +1,14 @@
 #include "scenes/io/utf16.h"
 
-#include <cstdint>
-
 namespace flowskin::scenes {
 namespace {
 
 constexpr std::uint32_t replacement = 0xFFFD;
 
+}  // namespace
+
 void append_utf8(std::uint32_t code, std::string& text) {
+  if (code > 0x10FFFF || (code >= 0xD800 && code < 0xE000)) code = replacement;
   const auto byte = [&](std::uint32_t value) { text += static_cast<char>(value); };
   if (code < 0x80) return byte(code);
   if (code < 0x800) {
@@ -23,8 +24,6 @@ void append_utf8(std::uint32_t code, std::string& text) {
   }
   byte(0x80 | (code & 0x3F));
 }
-
-}  // namespace
 
 bool is_utf16(std::string_view bytes) { return bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"); }
 

@@ -1,11 +1,13 @@
 #include "scenes/io/vtk_data.h"
 
 #include <fmt/format.h>
+#include <lz4.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace flowskin::scenes {
@@ -83,10 +85,20 @@ void check_size(std::uint64_t size, std::size_t expected) {
   if (size != expected) throw VtkDataError(fmt::format("the array has {} bytes, {} were expected", size, expected));
 }
 
-void append_inflated(const std::string& packed, std::uint64_t size, std::string& result) {
+/// Appends what a block of zlib or LZ4 holds, `size` bytes.
+void append_inflated(const std::string& packed, std::uint64_t size, VtkEncoding::Compressor compressor,
+                     std::string& result) {
   const std::size_t start = result.size();
   if (size > largest_ratio * (packed.size() + 1)) throw VtkDataError("a compressed block with an impossible size");
   result.resize(start + static_cast<std::size_t>(size));
+  if (compressor == VtkEncoding::Compressor::lz4) {
+    constexpr std::uint64_t most = std::numeric_limits<int>::max();
+    if (size > most || packed.size() > most ||
+        LZ4_decompress_safe(packed.data(), result.data() + start, static_cast<int>(packed.size()),
+                            static_cast<int>(size)) != static_cast<int>(size))
+      throw VtkDataError("a compressed block is damaged");
+    return;
+  }
   uLongf length = static_cast<uLongf>(size);
   const int status = uncompress(reinterpret_cast<Bytef*>(result.data() + start), &length,
                                 reinterpret_cast<const Bytef*>(packed.data()), static_cast<uLong>(packed.size()));
@@ -105,7 +117,7 @@ std::string take_compressed(Bytes& bytes, const VtkEncoding& encoding, std::size
   for (std::uint64_t i = 0; i < blocks; ++i) sizes.push_back(take_length(bytes, encoding));
   std::string result;
   for (std::uint64_t i = 0; i < blocks; ++i)
-    append_inflated(bytes.take(sizes[i]), i < whole ? block_size : last_size, result);
+    append_inflated(bytes.take(sizes[i]), i < whole ? block_size : last_size, encoding.compressor, result);
   return result;
 }
 
@@ -113,7 +125,7 @@ std::string take_compressed(Bytes& bytes, const VtkEncoding& encoding, std::size
 
 std::string vtk_array_bytes(std::string_view data, bool base64, const VtkEncoding& encoding, std::size_t expected) {
   Bytes bytes(data, base64);
-  if (encoding.compressed) return take_compressed(bytes, encoding, expected);
+  if (encoding.compressor != VtkEncoding::Compressor::none) return take_compressed(bytes, encoding, expected);
   check_size(take_length(bytes, encoding), expected);
   return bytes.take(expected);
 }

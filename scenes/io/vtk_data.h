@@ -16,7 +16,8 @@ struct VtkDataError : std::runtime_error {
 struct VtkEncoding {
   bool big_endian = false;
   bool wide_header = false;  ///< Headers of 8 bytes instead of 4.
-  bool compressed = false;   ///< By vtkZLibDataCompressor.
+  enum class Compressor { none, zlib, lz4 };
+  Compressor compressor = Compressor::none;
 };
 
 /// The bytes of the array that starts at the beginning of `data`, where more may follow. A header in front tells how

@@ -35,6 +35,8 @@ constexpr std::size_t most_tag_levels = 64;
 /// No file of this size exists; larger counts would overflow the arithmetic below.
 constexpr std::uint64_t most_points = std::uint64_t{1} << 40;
 
+using Compressor = VtkEncoding::Compressor;
+
 /// An array as its tag describes it.
 struct Array {
   std::string name;
@@ -44,6 +46,12 @@ struct Array {
   std::optional<std::uint64_t> offset;  ///< into the appended data
   std::size_t start = 0;                ///< of its tag
   std::string_view text;                ///< between its tags
+};
+
+/// The faces of a piece, as corners and the end of each face among them.
+struct Polygons {
+  std::uint64_t count = 0, points = 0, first_point = 0;
+  std::optional<Array> corners, ends;
 };
 
 class VtpParser {
@@ -62,7 +70,11 @@ class VtpParser {
     if (!open_.empty())
       scanner_.fail(head_.size(), fmt::format("<{}> is never closed: the file is truncated", open_.back()));
     check_columns();
-    table_.format = fmt::format("VTK XML ({}{}{})", encoding_.compressed ? "zlib, " : "",
+    for (const Polygons& polygons : polygons_) add_triangles(polygons);
+    table_.format = fmt::format("VTK XML ({}{}{})",
+                                encoding_.compressor == Compressor::none   ? ""
+                                : encoding_.compressor == Compressor::zlib ? "zlib, "
+                                                                           : "lz4, ",
                                 encoding_.big_endian ? "big endian, " : "", formats_.empty() ? "no data" : formats_);
     return std::move(table_);
   }
@@ -106,9 +118,7 @@ class VtpParser {
     const auto value = [&tag](std::string_view name) { return tag.find(name) ? *tag.find(name) : std::string(); };
     const std::string type = value("type"), order = value("byte_order"), header = value("header_type");
     if (type.starts_with("P") && type != "PolyData")
-      scanner_.fail(tag.start, type +
-                                   ": this only names the files of a parallel run; merge them in ParaView (File > "
-                                   "Save Data) or name the pieces' files");
+      scanner_.fail(tag.start, type + ": this only names the files of a parallel run, which must lie beside it");
     if (type == "Collection")
       scanner_.fail(tag.start, "this is a collection of files; give it alone, with the end .pvd");
     if (type != "PolyData" && type != "UnstructuredGrid")
@@ -119,12 +129,15 @@ class VtpParser {
     if (header != "UInt32" && header != "UInt64" && !header.empty())
       scanner_.fail(tag.start, "header_type: expected UInt32 or UInt64");
     const std::string compressor = value("compressor");
-    if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
+    if (!compressor.empty() && compressor != "vtkZLibDataCompressor" && compressor != "vtkLZ4DataCompressor")
       scanner_.fail(tag.start, compressor +
-                                   " is not supported; write the file with zlib or without compression "
+                                   " is not supported; write the file with zlib, lz4 or without compression "
                                    "(ParaView: Compressor Type in the dialogue of Save Data)");
     if (tag.closes) scanner_.fail(tag.start, "<VTKFile> closes itself: there are no particles in it");
-    encoding_ = {order == "BigEndian", header == "UInt64", !compressor.empty()};
+    encoding_ = {order == "BigEndian", header == "UInt64",
+                 compressor.empty()                     ? Compressor::none
+                 : compressor == "vtkLZ4DataCompressor" ? Compressor::lz4
+                                                        : Compressor::zlib};
     has_root_ = true;
   }
 
@@ -147,7 +160,34 @@ class VtpParser {
     table_.count += static_cast<std::size_t>(piece_points_);
     table_.polygons += static_cast<std::size_t>(count_of(tag, "NumberOfPolys", 0, most_points) +
                                                 count_of(tag, "NumberOfStrips", 0, most_points));
+    polygons_.push_back({count_of(tag, "NumberOfPolys", 0, most_points), piece_points_,
+                         table_.count - static_cast<std::size_t>(piece_points_), std::nullopt, std::nullopt});
     has_piece_ = true;
+  }
+
+  /// Cuts polygons into fans.
+  void add_triangles(const Polygons& polygons) {
+    if (polygons.count == 0 || !polygons.corners || !polygons.ends) return;
+    const std::vector<double> ends = numbers_of(*polygons.ends, polygons.count);
+    const double corner_count = ends.back();
+    if (!(corner_count >= 0 && corner_count <= static_cast<double>(most_points)))
+      scanner_.fail(polygons.ends->start, "the faces of the mesh end nowhere");
+    const std::vector<double> corners = numbers_of(*polygons.corners, static_cast<std::uint64_t>(corner_count));
+    std::size_t start = 0;
+    for (const double face_end : ends) {
+      if (!(face_end >= static_cast<double>(start) && face_end <= corner_count))
+        scanner_.fail(polygons.ends->start, "the faces of the mesh overlap");
+      const auto end = static_cast<std::size_t>(face_end);
+      const auto corner = [&](std::size_t place) {
+        const double index = corners[place];
+        if (!(index >= 0 && index < static_cast<double>(polygons.points)))
+          scanner_.fail(polygons.corners->start, fmt::format("a face has the corner {}, which is no point", index));
+        return static_cast<int>(polygons.first_point + static_cast<std::uint64_t>(index));
+      };
+      for (std::size_t k = start + 1; k + 1 < end; ++k)
+        table_.triangles.push_back({corner(start), corner(k), corner(k + 1)});
+      start = end;
+    }
   }
 
   Array described(const XmlTag& tag) const {
@@ -185,6 +225,9 @@ class VtpParser {
       add_columns(points, {"x", "y", "z"});
     } else if (inside("PointData")) {
       read_attribute(tag);
+    } else if (inside("Polys") && name && !polygons_.empty()) {
+      if (*name == "connectivity") polygons_.back().corners = described(tag);
+      if (*name == "offsets") polygons_.back().ends = described(tag);
     }
   }
 
@@ -313,6 +356,7 @@ class VtpParser {
   bool has_root_ = false, has_piece_ = false;
   VtkEncoding encoding_;
   std::uint64_t piece_points_ = 0;
+  std::vector<Polygons> polygons_;
   std::string formats_;
   ParticleTable table_;
 };
@@ -324,6 +368,15 @@ ParticleTable parse_vtp(std::string_view bytes, const std::string& name) { retur
 namespace {
 
 using PvdEntry = std::pair<double, std::filesystem::path>;
+
+/// A name in a file that names others; those of Windows have \ between folders.
+std::filesystem::path path_beside(std::string entry, const std::filesystem::path& file) {
+  std::error_code error;
+  const auto found = [&] { return file.parent_path() / entry; };
+  if (entry.find('\\') != std::string::npos && !std::filesystem::exists(found(), error))
+    std::replace(entry.begin(), entry.end(), '\\', '/');
+  return found();
+}
 
 PvdEntry entry_of(const XmlTag& tag, const std::filesystem::path& file, const XmlScanner& scanner) {
   const std::string *time = tag.find("timestep"), *entry = tag.find("file");
@@ -337,8 +390,7 @@ PvdEntry entry_of(const XmlTag& tag, const std::filesystem::path& file, const Xm
   if (!std::isfinite(value))
     scanner.fail(tag.start, fmt::format("timestep=\"{}\": the time is not finite", time->substr(0, 40)));
   if (entry->find('\0') != std::string::npos) scanner.fail(tag.start, "the name of the file has a zero byte");
-  const std::filesystem::path path(*entry);
-  return {value, path.is_absolute() ? path : file.parent_path() / path};
+  return {value, path_beside(*entry, file)};
 }
 
 }  // namespace
@@ -364,6 +416,26 @@ std::vector<PvdEntry> parse_pvd(std::string_view bytes, const std::filesystem::p
     scanner.fail(bytes.size(), fmt::format("<{}> is never closed: the file is truncated", open.back()));
   if (entries.empty()) scanner.fail(bytes.size(), "the collection names no files");
   return entries;
+}
+
+std::vector<std::filesystem::path> pieces_of_vtk(std::string_view bytes, const std::filesystem::path& file) {
+  const std::string_view start = bytes.substr(0, 4096);
+  if (start.find("\"PPolyData\"") == start.npos && start.find("\"PUnstructuredGrid\"") == start.npos) return {};
+  const std::string name = file.string();
+  XmlScanner scanner(bytes, name);
+  std::vector<std::filesystem::path> pieces;
+  bool is_whole = false;
+  for (XmlTag tag; scanner.next(tag);) {
+    if (tag.closes && tag.name == "VTKFile") is_whole = true;
+    if (!tag.opens || tag.name != "Piece") continue;
+    const std::string* source = tag.find("Source");
+    if (source == nullptr || source->empty() || source->find('\0') != std::string::npos)
+      scanner.fail(tag.start, "expected <Piece Source=\"NAME\"/>");
+    pieces.push_back(path_beside(*source, file));
+  }
+  if (!is_whole) scanner.fail(bytes.size(), "<VTKFile> is never closed: the file is truncated");
+  if (pieces.empty()) scanner.fail(bytes.size(), "there is no <Piece>: no file is named");
+  return pieces;
 }
 
 }  // namespace flowskin::scenes

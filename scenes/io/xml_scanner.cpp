@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cstdint>
 
 #include "common/errors.h"
+#include "scenes/io/utf16.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -13,12 +16,28 @@ namespace {
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view name_ends = " \t\r\n=/>\"'<";
 
+/// Takes &#233; or &#xE9; off the value and puts its character to the text, in UTF-8; false where there is none.
+bool take_number_entity(std::string_view& value, std::string& text) {
+  constexpr std::size_t longest = 10;
+  const std::size_t end = value.substr(0, longest).find(';');
+  if (!value.starts_with("&#") || end == std::string_view::npos) return false;
+  const bool is_hex = end > 3 && value[2] == 'x';
+  const std::string_view digits = value.substr(is_hex ? 3 : 2, end - (is_hex ? 3 : 2));
+  std::uint32_t letter = 0;
+  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), letter, is_hex ? 16 : 10);
+  if (error != std::errc() || stop != digits.data() + digits.size()) return false;
+  append_utf8(letter, text);
+  value.remove_prefix(end + 1);
+  return true;
+}
+
 /// With &amp; and its like replaced.
 std::string decoded(std::string_view value) {
   constexpr std::array<std::pair<std::string_view, char>, 5> entities{
       {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}}};
   std::string text;
   while (!value.empty()) {
+    if (take_number_entity(value, text)) continue;
     const auto* entity =
         std::find_if(entities.begin(), entities.end(), [&](const auto& e) { return value.starts_with(e.first); });
     text += entity == entities.end() ? value.front() : entity->second;

@@ -4,15 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "common/errors.h"
 #include "common/number_text.h"
+#include "scenes/io/json_particles.h"
 #include "scenes/io/particle_file.h"
 #include "scenes/io/read_bytes.h"
 #include "scenes/io/vtp_reader.h"
 #include "scenes/scene_checks.h"
 #include "scenes/sources/file_pattern.h"
+#include "scenes/sources/name_order.h"
 #include "scenes/sources/particle_spacing.h"
 
 namespace flowskin::scenes {
@@ -28,13 +33,6 @@ constexpr double whole_rate_tolerance = 1e-3;
 /// By order, most particles of two files would have to move this many spacings: then the order is not theirs.
 constexpr double far_in_spacings = 2;
 
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return extension;
-}
-
 ParticleNeeds needs_of(const RecordedSpec& spec) {
   ParticleNeeds needs;
   needs.ids = spec.ids == RecordedSpec::Ids::automatic;
@@ -47,6 +45,19 @@ ParticleNeeds needs_of(const RecordedSpec& spec) {
   needs.skip_invalid = spec.skip_invalid;
   needs.skip_duplicates = spec.skip_duplicates;
   return needs;
+}
+
+using Entries = std::vector<std::pair<double, std::filesystem::path>>;
+
+/// Time and file of each entry of a .pvd or .vtk.series, whatever it is called; none where the file is another one.
+Entries entries_of_collection(const std::filesystem::path& file) {
+  if (!is_collection(file)) return {};
+  const std::string bytes = read_bytes(file);
+  if (!is_file_series(bytes)) return parse_pvd(bytes, file);
+  Entries entries;
+  for (auto& [time, name] : parse_file_series(bytes, file.string()))
+    entries.emplace_back(time, file.parent_path() / name);
+  return entries;
 }
 
 /// What a look at each file tells.
@@ -65,10 +76,16 @@ class SequenceOpener {
                                    spec_.frame_interval, shortest_interval));
     if (!take_collection()) take_files();
     sequence_.needs = needs_of(spec_);
-    const ParticleTable table = read_particle_table(sequence_.files.front());
-    sequence_.first = read_particles(sequence_.files.front(), sequence_.needs);
+    if (sequence_.tables->steps(sequence_.places.front().file).size() > 1) take_steps();
+    const ParticleTable table = sequence_.tables->table(sequence_.places.front());
+    sequence_.first = particles_of_file(table, sequence_.places.front().name(), sequence_.needs);
+    if (sequence_.places.size() == 1)
+      sequence_.notes.push_back(fmt::format(
+          "a single frame: its surface is made, {}",
+          sequence_.first.has_velocities ? "moving as the velocities in the file say" : "and its velocity is zero"));
     const bool wants_times = file_times_.empty() && spec_.frame_interval == 0 && table.time.has_value();
-    const bool wants_ids = spec_.ids == RecordedSpec::Ids::automatic && !sequence_.first.has_ids;
+    const bool wants_ids =
+        sequence_.places.size() > 1 && spec_.ids == RecordedSpec::Ids::automatic && !sequence_.first.has_ids;
     const Census census = wants_times || wants_ids ? look_at_all(whole_count(table)) : Census{};
     settle_times(wants_times ? census.times : std::vector<double>{}, table.time.has_value());
     settle_ids(census);
@@ -78,27 +95,77 @@ class SequenceOpener {
   std::vector<std::filesystem::path> files() {
     const bool by_collection = take_collection();
     if (!by_collection) take_files();
-    if (by_collection) sequence_.files.emplace_back(absolute_name(directory_, spec_.files.front()));
-    return std::move(sequence_.files);
+    std::vector<std::filesystem::path> files;
+    for (const FrameTables::Place& place : sequence_.places) {
+      files.push_back(place.file);
+      files.insert(files.end(), place.more.begin(), place.more.end());
+    }
+    if (by_collection) files.emplace_back(absolute_name(directory_, spec_.files.front()));
+    return files;
   }
 
  private:
-  /// A single .pvd names the files and their times.
+  /// A single .pvd or .vtk.series names the files and their times. Files of one time are parts of one frame.
   bool take_collection() {
-    const std::filesystem::path file = spec_.files.empty() ? "" : absolute_name(directory_, spec_.files.front());
-    if (spec_.files.size() != 1 || lower_extension(file) != ".pvd") return false;
-    auto entries = parse_pvd(read_bytes(file), file);
+    if (spec_.files.size() != 1) return false;
+    Entries entries = entries_of_collection(absolute_name(directory_, spec_.files.front()));
+    if (entries.empty()) return false;
     std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [time, path] : entries) {
-      if (!file_times_.empty() && time == file_times_.back())
-        throw InputError(
-            fmt::format("{}: {} and {} have the same time {} s; one file per time is expected (merge the "
-                        "parts in ParaView)",
-                        file.string(), sequence_.files.back().string(), path.string(), time));
+      if (!file_times_.empty() && time == file_times_.back()) {
+        sequence_.places.back().more.push_back(path);
+        continue;
+      }
       file_times_.push_back(time);
-      sequence_.files.push_back(path);
+      sequence_.places.push_back({path, {}, 0, true});
     }
+    if (entries.size() > sequence_.places.size())
+      sequence_.notes.push_back(fmt::format("{} files for {} times: those of one time are read as one", entries.size(),
+                                            sequence_.places.size()));
     return true;
+  }
+
+  /// Files of many steps: every step is a frame.
+  void take_steps() {
+    if (!file_times_.empty())
+      throw InputError(fmt::format("{}: holds {} time steps, but its time is given from outside; give the file alone",
+                                   sequence_.places.front().file.string(),
+                                   sequence_.tables->steps(sequence_.places.front().file).size()));
+    const std::vector<FrameTables::Place> files = std::exchange(sequence_.places, {});
+    NameOrder counted;
+    for (const FrameTables::Place& place : files) {
+      const std::vector<ParticleTable>& steps = sequence_.tables->steps(place.file);
+      for (std::size_t k = 0; k < steps.size(); ++k) {
+        sequence_.places.push_back({place.file, {}, k, false});
+        if (steps[k].step) counted.counts.push_back(static_cast<std::int64_t>(*steps[k].step));
+      }
+    }
+    sequence_.notes.push_back(
+        fmt::format("{} time steps in {} file{}", sequence_.places.size(), files.size(), files.size() == 1 ? "" : "s"));
+    numbers_.clear();
+    steps_.resize(sequence_.places.size());
+    std::iota(steps_.begin(), steps_.end(), std::uint64_t{0});
+    if (counted.counts.size() == sequence_.places.size()) count_time_steps(counted);
+  }
+
+  /// Gaps between the numbers of time steps are gaps in time.
+  void count_time_steps(NameOrder& counted) {
+    const auto& counts = counted.counts;
+    if (std::adjacent_find(counts.begin(), counts.end(), std::greater_equal<>()) != counts.end()) {
+      sequence_.warnings.push_back(fmt::format(
+          "{}: the numbers of the time steps do not ascend; they are played in the order in which they stand",
+          sequence_.places.front().file.string()));
+      return;
+    }
+    counted.numbers.assign(counts.begin(), counts.end());
+    const Raster raster = raster_of(counted);
+    if (!raster.is_regular || raster.stride == 0) return;
+    steps_ = raster.steps;
+    if (raster.missing > 0)
+      sequence_.warnings.push_back(
+          fmt::format("{} of {} time steps are missing by their numbers: the time goes on across "
+                      "the gaps, particles are interpolated",
+                      raster.missing, raster.steps.back() + 1));
   }
 
   void take_files() {
@@ -107,7 +174,7 @@ class SequenceOpener {
     NumberedFiles files = files_of_patterns(names);
     if (spec_.times_in_names) file_times_ = times_from_names(files);
     if (files.look_like_times) numbers_ = files.numbers;
-    sequence_.files = std::move(files.paths);
+    for (std::filesystem::path& path : files.paths) sequence_.places.push_back({std::move(path), {}, 0, true});
     steps_ = std::move(files.steps);
     sequence_.notes.insert(sequence_.notes.end(), files.notes.begin(), files.notes.end());
     if (!files.missing.empty())
@@ -131,12 +198,12 @@ class SequenceOpener {
   Census look_at_all(std::size_t count) const {
     Census census;
     bool all_have_times = true;
-    for (const auto& file : sequence_.files) {
-      const ParticleTable table = read_particle_table(file);
+    for (const FrameTables::Place& place : sequence_.places) {
+      const ParticleTable table = sequence_.tables->table(place);
       // What is kept may be less in one file than in another.
       const bool whole = sequence_.needs.keep.empty() && !sequence_.needs.region;
       const std::size_t here =
-          whole ? table.count : particles_from_table(table, file.string(), sequence_.needs).state.ids.size();
+          whole ? table.count : particles_from_table(table, place.name(), sequence_.needs).state.ids.size();
       census.same_count = census.same_count && here == count;
       all_have_times = all_have_times && table.time && std::isfinite(*table.time);
       if (all_have_times) census.times.push_back(*table.time);
@@ -148,7 +215,7 @@ class SequenceOpener {
   void settle_times(const std::vector<double>& times_in_files, bool first_has_time) {
     const bool ascending = std::adjacent_find(times_in_files.begin(), times_in_files.end(), std::greater_equal<>()) ==
                            times_in_files.end();
-    if (spec_.frame_interval > 0 && (file_times_.empty() || sequence_.files.size() == 1)) {
+    if (spec_.frame_interval > 0 && (file_times_.empty() || sequence_.places.size() == 1)) {
       by_steps(spec_.frame_interval);
     } else if (spec_.frame_interval > 0) {
       steps_.clear();
@@ -156,11 +223,11 @@ class SequenceOpener {
       by_steps(spec_.frame_interval);
     } else if (!file_times_.empty()) {
       by_times(file_times_);
-    } else if (sequence_.files.size() > 1 && times_in_files.size() == sequence_.files.size() && ascending) {
+    } else if (sequence_.places.size() > 1 && times_in_files.size() == sequence_.places.size() && ascending) {
       by_times(times_in_files);
     } else {
       by_steps(default_interval);
-      if (sequence_.files.size() > 1)
+      if (sequence_.places.size() > 1)
         sequence_.notes.push_back(
             fmt::format("{}: 1/30 s between files is assumed; --frame-rate or --time-step sets it",
                         first_has_time ? "the times in the files do not ascend" : "the files give no times"));
@@ -186,7 +253,7 @@ class SequenceOpener {
       throw InputError(
           fmt::format("{}: the times from {:.4g} to {:.4g} s, usually {:.4g} s apart, are none that can be played "
                       "({:.4g} to {:.4g} s apart); --time-step or --frame-rate gives others",
-                      sequence_.files.front().string(), times.front(), times.back(), interval, shortest_interval,
+                      sequence_.places.front().file.string(), times.front(), times.back(), interval, shortest_interval,
                       longest_interval));
     const double rate = 1 / interval;
     if (std::round(rate) >= 1 && std::abs(rate - std::round(rate)) < whole_rate_tolerance * rate)
@@ -221,6 +288,8 @@ class SequenceOpener {
       sequence_.ids = Ids::none;
     } else if (spec_.ids == RecordedSpec::Ids::order) {
       sequence_.ids = Ids::order;
+    } else if (!sequence_.first.has_ids && sequence_.places.size() == 1) {
+      sequence_.ids = Ids::order;
     } else if (!sequence_.first.has_ids) {
       sequence_.ids = Ids::none;
       if (spec_.skip_invalid || spec_.skip_duplicates || !spec_.region.empty()) {
@@ -246,9 +315,11 @@ class SequenceOpener {
   /// False where, by their order, most particles would jump from the first file to the second although the particles as
   /// a whole hardly move: some programs sort them anew.
   bool order_is_lasting() const {
-    if (sequence_.files.size() < 2) return true;
+    if (sequence_.places.size() < 2) return true;
     const std::vector<Vec3>& before = sequence_.first.state.positions;
-    const std::vector<Vec3> after = read_particles(sequence_.files[1], sequence_.needs).state.positions;
+    const std::vector<Vec3> after =
+        particles_of_file(sequence_.tables->table(sequence_.places[1]), sequence_.places[1].name(), sequence_.needs)
+            .state.positions;
     std::vector<double> moved;
     for (std::size_t i = 0; i < before.size(); ++i) moved.push_back((after[i] - before[i]).norm());
     const double by_order = quantile(moved, 0.5), nearest = quantile(nearest_distances(before, after), 0.5);
@@ -265,6 +336,15 @@ class SequenceOpener {
 
 }  // namespace
 
+bool is_collection(const std::filesystem::path& file) {
+  constexpr std::size_t telling = 4096;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return false;
+  const std::string start = first_bytes(file, telling);
+  return start.find("\"Collection\"") != std::string::npos || start.find("<Collection") != std::string::npos ||
+         file.extension() == ".pvd" || is_file_series(start);
+}
+
 ParticleSequence open_sequence(const RecordedSpec& spec, const std::string& directory) {
   return SequenceOpener(spec, directory).open();
 }
@@ -274,13 +354,14 @@ std::vector<std::filesystem::path> sequence_files(const RecordedSpec& spec, cons
 }
 
 ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k) {
-  ParticleFile file = read_particles(sequence.files[k], sequence.needs);
+  const FrameTables::Place& place = sequence.places[k];
+  ParticleFile file = particles_of_file(sequence.tables->table(place), place.name(), sequence.needs);
   const auto require = [&](bool has, bool first_has, const char* what) {
     if (first_has && !has)
       throw InputError(
           fmt::format("{}: the particles have no {}, but those of {} do; all files of a sequence need the "
                       "same columns",
-                      sequence.files[k].string(), what, sequence.files.front().string()));
+                      place.name(), what, sequence.places.front().name()));
   };
   require(file.has_ids, sequence.first.has_ids && sequence.ids == ParticleSequence::Ids::of_files, "ids");
   require(file.has_velocities, sequence.first.has_velocities, "velocities");
@@ -290,7 +371,7 @@ ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k)
     throw InputError(
         fmt::format("{}: {} particles where the first file has {}, and they have no ids (column \"id\") to "
                     "find them again by; --no-ids does without them",
-                    sequence.files[k].string(), count, first_count));
+                    place.name(), count, first_count));
   return file;
 }
 

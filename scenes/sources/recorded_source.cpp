@@ -10,8 +10,6 @@
 #include "common/bounds.h"
 #include "common/errors.h"
 #include "common/outliers.h"
-#include "scenes/io/checksum.h"
-#include "scenes/io/read_bytes.h"
 #include "scenes/sources/forward_time.h"
 #include "scenes/sources/particle_spacing.h"
 #include "scenes/sources/wall_points.h"
@@ -90,14 +88,14 @@ ParticleState between(const ParticleState& a, const ParticleState& b, double s, 
 /// would be anywhere.
 void check_speeds(const ParticleSequence& sequence, double spacing) {
   constexpr double farthest = 1e5;  // spacings
-  if (!sequence.first.has_velocities || sequence.files.size() < 2) return;
+  if (!sequence.first.has_velocities || sequence.places.size() < 2) return;
   double fastest = 0;
   for (const Vec3& v : sequence.first.state.velocities) fastest = std::max(fastest, v.norm());
   if (fastest * sequence.interval <= farthest * spacing) return;
   throw InputError(fmt::format(
       "{}: at {:.4g} m/s a particle goes {:.4g} m until the next file, {:.4g} s later, which is more than "
       "{:g} spacings of {:.4g} m; are velocities, times (--time-step) and spacing right?",
-      sequence.files.front().string(), fastest, fastest * sequence.interval, sequence.interval, farthest, spacing));
+      sequence.places.front().name(), fastest, fastest * sequence.interval, sequence.interval, farthest, spacing));
 }
 
 /// Where particles, found again by their ids, go clearly farther or less far from file to file than their velocities
@@ -107,7 +105,7 @@ std::string contradicting_velocities(const ParticleSequence& sequence, double sp
   constexpr double least_path = 0.02;  // spacings, by either
   constexpr std::size_t most_looks = 4, fewest = 8;
   if (!sequence.first.has_velocities || sequence.ids == ParticleSequence::Ids::none) return {};
-  const std::size_t count = sequence.files.size();
+  const std::size_t count = sequence.places.size();
   for (std::size_t look = 0; look < most_looks && count >= 2; ++look) {
     const std::size_t k = look * (count - 2) / (most_looks - 1);
     ParticleState a = read_sequence_file(sequence, k).state, b = read_sequence_file(sequence, k + 1).state;
@@ -130,11 +128,11 @@ std::string contradicting_velocities(const ParticleSequence& sequence, double sp
       return fmt::format(
           "from {} to the next file the particles do not move as their velocities say: are the ids lasting, and the "
           "velocities right?",
-          sequence.files[k].filename().string());
+          std::filesystem::path(sequence.places[k].name()).filename().string());
     return fmt::format(
         "from {} to the next file the particles go {:.3g} times as far as their velocities say: the frame rate "
         "(--time-step {:.4g} would fit) or the unit of the velocities seems wrong",
-        sequence.files[k].filename().string(), factor, interval * factor);
+        std::filesystem::path(sequence.places[k].name()).filename().string(), factor, interval * factor);
   }
   return {};
 }
@@ -258,7 +256,7 @@ void RecordedSource::advance_to(double time) {
   if (ends_before(time)) {
     throw InputError(
         fmt::format("{}: the recorded sequence of {} files ends at {:.6g} s, before {:.6g} s; ask for fewer frames",
-                    sequence_.files.back().string(), times.size(), times.back(), time));
+                    sequence_.places.back().file.string(), times.size(), times.back(), time));
   }
   const double tolerance = same_time * sequence_.interval;
   const auto after = std::upper_bound(times.begin(), times.end(), time + tolerance);
@@ -302,7 +300,7 @@ void RecordedSource::read_into_cache(std::size_t k) {
   left_out_[k].unwanted += leave_out_strays(state, spacing_);
   settle_rest_positions(k, state);
   cache_[k] = std::move(state);
-  if (!checksums_.contains(k)) checksums_[k] = checksum(0, read_bytes(sequence_.files[k]));
+  if (!checksums_.contains(k)) checksums_[k] = checksum_of_place(sequence_.places[k], *sequence_.tables);
 }
 
 namespace {
@@ -315,11 +313,9 @@ struct SequenceMark {
   int ids = 0;
 
   explicit SequenceMark(const ParticleSequence& sequence) : times(sequence.times), ids(static_cast<int>(sequence.ids)) {
-    for (const auto& file : sequence.files) {
-      std::error_code error;
-      const std::uintmax_t size = std::filesystem::file_size(file, error);
-      names.push_back(file.filename().string());
-      sizes.push_back(error ? 0 : size);
+    for (const FrameTables::Place& place : sequence.places) {
+      names.push_back(std::filesystem::path(place.name()).filename().string());
+      sizes.push_back(size_of_place(place, *sequence.tables));
     }
   }
   SequenceMark() = default;
@@ -350,9 +346,10 @@ void check_same_files(const SequenceMark& then, const SequenceMark& now) {
 /// come of them yet.
 void check_same_content(const std::map<std::uint64_t, std::uint32_t>& checksums, const ParticleSequence& sequence) {
   for (const auto& [k, then] : checksums) {
-    const std::filesystem::path& file = sequence.files.at(k);
-    if (checksum(0, read_bytes(file)) != then)
-      refuse(fmt::format("what is in {} has changed since the run that is to be resumed", file.filename().string()));
+    const FrameTables::Place& place = sequence.places.at(k);
+    if (checksum_of_place(place, *sequence.tables) != then)
+      refuse(fmt::format("what is in {} has changed since the run that is to be resumed",
+                         std::filesystem::path(place.name()).filename().string()));
   }
 }
 
@@ -372,7 +369,7 @@ void RecordedSource::restore(StateReader& reader) {
   reader(mark, state_, rest_positions_, renewals_, cached, checksums_);
   check_restored(state_);
   check_same_files(mark, SequenceMark(sequence_));
-  if (!checksums_.empty() && checksums_.rbegin()->first >= sequence_.files.size())
+  if (!checksums_.empty() && checksums_.rbegin()->first >= sequence_.places.size())
     throw StateError("the saved state names a file that is not there");
   check_same_content(checksums_, sequence_);
   if (cached.size() > most_cached ||
@@ -381,7 +378,7 @@ void RecordedSource::restore(StateReader& reader) {
   cache_.clear();
   take_back_renewals(cached);
   for (const std::uint64_t k : cached) {
-    if (k >= sequence_.files.size()) throw StateError("the saved state names a file that is not there");
+    if (k >= sequence_.places.size()) throw StateError("the saved state names a file that is not there");
     read_into_cache(k);
   }
 }
@@ -416,7 +413,7 @@ void RecordedSource::take_back_renewals(const std::vector<std::uint64_t>& cached
 ParticleState RecordedSource::complete_state(std::size_t k) {
   if (sequence_.first.has_velocities || !has_lasting_ids()) return file_state(k);
   // The two files next to k, in ascending order, so that the files read last stay in the cache.
-  const std::size_t count = sequence_.files.size();
+  const std::size_t count = sequence_.places.size();
   const std::size_t low = std::min(k > 0 ? k - 1 : 0, count > 3 ? count - 3 : 0), high = std::min(low + 2, count - 1);
   for (std::size_t i = low; i <= high; ++i) file_state(i);
   ParticleState here = file_state(k);
@@ -446,7 +443,7 @@ SourceStatistics RecordedSource::statistics() const {
   SourceStatistics statistics;
   statistics.summary = fmt::format(
       "recorded sequence: {} files from {}, one every {:.4g} s, {} particles in the first, {}, velocities {}",
-      sequence_.files.size(), sequence_.files.front().string(), sequence_.interval,
+      sequence_.places.size(), sequence_.places.front().file.string(), sequence_.interval,
       sequence_.first.state.positions.size(),
       sequence_.ids == Ids::of_files ? "ids as recorded"
       : sequence_.ids == Ids::order  ? "their order as ids"

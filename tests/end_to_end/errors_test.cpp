@@ -91,6 +91,15 @@ TEST_F(ProgramErrors, InfoOfSomethingElse) {
   expect(run_flowskin({"info", write("bad.ply", "ply\nformat ascii 1.0\nelement vertex 5\n")}), 2, {"bad.ply"});
 }
 
+TEST_F(ProgramErrors, InfoGoesOnAfterABadFile) {
+  const auto result =
+      run_flowskin({"info", write("bad.ply", "ply\n"), write("good.csv", "x,y,z\n1,2,3\n1,2,4\n1,3,3\n"),
+                    write("places.json", "[[0, 0, 0], [0, 0, 1], [0, 1, 0]]")});
+  EXPECT_EQ(result.status, 2) << result.output;
+  for (const char* word : {"1 of 3 files cannot be read: bad.ply", "particles: 3 (CSV)", "particles: 3 (JSON)"})
+    EXPECT_NE(result.output.find(word), std::string::npos) << word << "\n" << result.output;
+}
+
 TEST_F(ProgramErrors, InterruptionKeepsWholeFrames) {
   const fs::path out = folder_ / "run";
   const pid_t child = fork();

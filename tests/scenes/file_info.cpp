@@ -70,8 +70,30 @@ TEST_F(FileInfoTest, Particles) {
   EXPECT_NE(joined(describe_file(path("none.ply"))).find("particles: 0"), std::string::npos);
 }
 
+TEST_F(FileInfoTest, GoesByTheContent) {
+  const SurfaceFrame frame = sphere_frame(2);
+  write_surface_obj(path("a.obj"), frame, "a.mtl");
+  write_surface_ply(path("a.ply"), frame);
+  write_surface_vtp(path("a.vtp"), frame);
+  for (const char* name : {"a.obj", "a.ply", "a.vtp"}) {
+    std::filesystem::rename(path(name), path("some.thing"));
+    const FileInfo info = describe_file(path("some.thing"));
+    EXPECT_TRUE(info.sound) << name << "\n" << joined(info);
+    EXPECT_NE(joined(info).find("66 vertices, 128 triangles"), std::string::npos) << name << "\n" << joined(info);
+  }
+  const std::filesystem::path data = std::filesystem::path(FLOWSKIN_SOURCE_DIR) / "tests/scenes/data/anyone";
+  EXPECT_NE(joined(describe_file(data / "plain.dump")).find("time steps: 3, numbered 0 to 200"), std::string::npos);
+  EXPECT_NE(joined(describe_file(data / "steps.h5part")).find("time steps: 3, 0 to 0.5 s"), std::string::npos);
+  EXPECT_NE(joined(describe_sequence(data / "parts.pvd")).find("sequence: 4 files"), std::string::npos);
+  std::filesystem::copy(data / "series.vtk.series", path("series"));
+  std::filesystem::copy(data / "step_0.vtp", path("step_0.vtp"));
+  const FileInfo broken = describe_sequence(path("series"));
+  EXPECT_FALSE(broken.sound);
+  EXPECT_NE(joined(broken).find("missing: " + path("step_2.vtp").string()), std::string::npos) << joined(broken);
+}
+
 TEST_F(FileInfoTest, SaysWhatCannotBeRead) {
-  EXPECT_NE(message_of<InputError>([&] { describe_file(path("a.stl")); }).find("expected an OBJ, PLY or particle"),
+  EXPECT_NE(message_of<InputError>([&] { describe_file(write_text("a.stl", "solid")); }).find("columns x, y and z"),
             std::string::npos);
   EXPECT_NE(message_of<InputError>([&] { describe_file(path("a.obj")); }).find("no such file"), std::string::npos);
   const std::string twice = write_text("t.ply",

@@ -337,7 +337,7 @@ TEST_F(RecordedSourceTest, TimesComeFromTheFilesWhereNobodyTellsThem) {
                                         "</Collection></VTKFile>";
   const ParticleSequence collection = sequence("run.pvd");
   EXPECT_EQ(collection.times, (std::vector<double>{0, 0.5}));
-  EXPECT_EQ(collection.files[0].filename(), "even_0.csv");
+  EXPECT_EQ(collection.places[0].file.filename(), "even_0.csv");
 }
 
 TEST_F(RecordedSourceTest, WithoutIdsTheirOrderCountsWhereItLasts) {

@@ -1,14 +1,20 @@
-// flowskin info FILE...: what is in a file, and whether it is sound.
+// flowskin info FILE|FOLDER...: what is in it, and whether it is sound.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "common/errors.h"
+#include "scenes/io/csv_reader.h"
 #include "scenes/io/file_info.h"
+#include "scenes/io/json_particles.h"
+#include "scenes/io/read_bytes.h"
 #include "scenes/scene_file.h"
+#include "scenes/sources/particle_sequence.h"
 #include "tools/commands/command.h"
-#include "tools/pipeline/tracker_bridge.h"
+#include "tools/pipeline/run_directory.h"
 #include "tools/report/messages.h"
 
 namespace flowskin::tools {
@@ -35,14 +41,65 @@ scenes::FileInfo describe_scene(const std::filesystem::path& file) {
   return info;
 }
 
+/// What a run has written: its scene, its rows of frames.csv, its last surface.
+scenes::FileInfo describe_run(const RunDirectory& run) {
+  scenes::FileInfo info = describe_scene(run.scene());
+  info.lines.insert(info.lines.begin(), "a run directory of FlowSkin");
+  const std::filesystem::path csv = run.frames_csv();
+  const scenes::ParticleTable rows = scenes::parse_csv(scenes::read_bytes(csv), csv.string());
+  const auto last = [&](const char* column) {
+    const auto found = rows.columns.find(column);
+    return found == rows.columns.end() || found->second.empty() ? std::nan("") : found->second.back();
+  };
+  info.lines.push_back(
+      fmt::format("frames: {}, the last is number {} at {:.6g} s: {} particles, {} vertices, volume "
+                  "{:.6g} m^3",
+                  rows.count, last("frame"), last("time"), last("particles"), last("vertices"), last("volume")));
+  const std::filesystem::path surface = run.surface_folder() / fmt::format("frame_{:04.0f}.ply", last("frame"));
+  std::error_code error;
+  if (!std::filesystem::exists(surface, error)) return info;
+  const scenes::FileInfo mesh = scenes::describe_file(surface);
+  info.lines.emplace_back("the last surface:");
+  for (const std::string& line : mesh.lines) info.lines.push_back("  " + line);
+  info.sound = mesh.sound;
+  return info;
+}
+
+scenes::FileInfo describe(const std::filesystem::path& place) {
+  std::error_code error;
+  if (std::filesystem::is_directory(place, error)) {
+    const RunDirectory run(place);
+    const bool is_run = std::filesystem::exists(run.scene(), error) && std::filesystem::exists(run.frames_csv(), error);
+    return is_run ? describe_run(run) : scenes::describe_sequence(place);
+  }
+  if (scenes::is_collection(place)) return scenes::describe_sequence(place);
+  constexpr std::size_t telling = 64;
+  const std::string start = scenes::first_bytes(place, telling);
+  const std::size_t first = start.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  const bool is_json = place.extension() == ".json" || (first != std::string::npos && start[first] == '{');
+  return is_json && !scenes::is_json_particles(scenes::read_bytes(place)) ? describe_scene(place)
+                                                                          : scenes::describe_file(place);
+}
+
+/// Goes on after a file that cannot be read.
 int describe_all(const std::vector<std::filesystem::path>& files) {
+  std::vector<std::string> unread;
   bool sound = true;
   for (const auto& file : files) {
-    const scenes::FileInfo info = file.extension() == ".json" ? describe_scene(file) : scenes::describe_file(file);
-    put(file.string() + "\n");
-    for (const std::string& line : info.lines) put("  " + line + "\n");
-    sound = sound && info.sound;
+    try {
+      const scenes::FileInfo info = describe(file);
+      put(file.string() + "\n");
+      for (const std::string& line : info.lines) put("  " + line + "\n");
+      sound = sound && info.sound;
+    } catch (const InputError& error) {
+      if (files.size() == 1) throw;
+      say_line(error.what());
+      unread.push_back(file.filename().string());
+    }
   }
+  if (!unread.empty())
+    throw InputError(
+        fmt::format("{} of {} files cannot be read: {}", unread.size(), files.size(), fmt::join(unread, ", ")));
   if (!sound) throw InputError("not every file is sound; the lines above say what is wrong");
   return 0;
 }
@@ -52,8 +109,11 @@ int describe_all(const std::vector<std::filesystem::path>& files) {
 Command info_command() {
   const auto files = std::make_shared<std::vector<std::filesystem::path>>();
   return {"info",
-          "Say what is in a mesh, particle or scene file, and whether it is sound",
-          {{"files", files.get(), "OBJ, PLY, particle (CSV, VTK, VTP) or scene files", {.is_required = true}}},
+          "Say what is in a mesh, particle or scene file, a .pvd or a run directory, and whether it is sound",
+          {{"files",
+            files.get(),
+            "Meshes (OBJ, PLY, VTP), particles of any format that track reads, scenes, folders",
+            {.is_required = true}}},
           [files](const std::string&) { return describe_all(*files); }};
 }
 

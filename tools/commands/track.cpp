@@ -29,7 +29,7 @@ using scenes::Vec3;
 
 /// What the user says; lengths in metres. Unset values are estimated or have defaults.
 struct TrackOptions {
-  std::vector<fs::path> particles;  ///< files, patterns, a folder, or one .pvd
+  std::vector<fs::path> particles;  ///< files, patterns, a folder, one file of many steps, or one .pvd
   std::optional<double> spacing, radius, edge_length, tile_size;
   std::optional<double> frame_rate, time_step;  ///< files per second, s between files
   bool no_ids = false, times_in_names = false;
@@ -57,7 +57,7 @@ void warn(const std::string& line) { say_line("warning: " + line); }
 std::vector<Vec3> telling_positions(const ParticleSequence& sequence) {
   constexpr std::size_t looks = 5;
   std::vector<Vec3> most = sequence.first.state.positions;
-  const std::size_t first = most.size(), last = sequence.files.size() - 1;
+  const std::size_t first = most.size(), last = sequence.places.size() - 1;
   const auto look_at = [&](std::size_t k) {
     std::vector<Vec3> positions = scenes::read_sequence_file(sequence, k).state.positions;
     if (positions.size() > most.size() && positions.size() > 2 * first) most = std::move(positions);
@@ -131,16 +131,13 @@ void set_times(const TrackOptions& options, ParticleSequence& sequence, scenes::
                     "--time-step right?",
                     sequence.times.back(), sequence.interval));
   scene.frames = static_cast<int>(all);
-  if (scene.frames == 0)
-    throw InputError(fmt::format("{} is the only file: to track a surface, at least two are needed",
-                                 sequence.files.front().string()));
   if (options.run.frames) scene.frames = std::min(scene.frames, *options.run.frames);
 }
 
 /// Particles at the beginning, in the middle and at the end: what pictures are to show.
 std::vector<Vec3> places_seen(const ParticleSequence& sequence) {
   std::vector<Vec3> places;
-  const std::size_t last = sequence.files.size() - 1;
+  const std::size_t last = sequence.places.size() - 1;
   for (const std::size_t k : {std::size_t{0}, last / 2, last}) {
     const std::vector<Vec3> positions = scenes::read_sequence_file(sequence, k).state.positions;
     places.insert(places.end(), positions.begin(), positions.end());
@@ -210,7 +207,7 @@ void check_ranges(const scenes::Scene& scene) {
 scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) {
   scenes::Scene scene;
   scene.directory = scenes::current_folder();
-  scene.name = default_name(sequence.files.front());
+  scene.name = default_name(sequence.places.front().file);
   scene.description = "A surface tracked on recorded particles by `flowskin track`.";
   scene.particles.source = scenes::ParticlesSpec::Source::recorded;
   scene.particles.recorded = recorded_spec(options);
@@ -235,8 +232,8 @@ scenes::Scene scene_of(const TrackOptions& options, ParticleSequence& sequence) 
 int list_files(const ParticleSequence& sequence) {
   for (const std::string& warning : sequence.warnings) warn(warning);
   for (const std::string& note : sequence.notes) say_line(note);
-  for (std::size_t k = 0; k < sequence.files.size(); ++k)
-    put(fmt::format("{}  {:.9g} s  {}\n", k, sequence.times[k], sequence.files[k].string()));
+  for (std::size_t k = 0; k < sequence.places.size(); ++k)
+    put(fmt::format("{}  {:.9g} s  {}\n", k, sequence.times[k], sequence.places[k].name()));
   return 0;
 }
 
@@ -244,8 +241,9 @@ int track(const TrackOptions& options) {
   ParticleSequence sequence = scenes::open_sequence(recorded_spec(options), scenes::current_folder());
   if (options.list) return list_files(sequence);
   for (const std::string& warning : sequence.warnings) warn(warning);
-  tell(options, fmt::format("{} files from {}, one every {:.6g} s", sequence.files.size(),
-                            sequence.files.front().string(), sequence.interval));
+  tell(options, fmt::format("{} {} from {}, one every {:.6g} s", sequence.places.size(),
+                            sequence.places.front().is_only_step ? "files" : "time steps",
+                            sequence.places.front().file.string(), sequence.interval));
   for (const std::string& note : sequence.notes) tell(options, note);
   RunOptions run = options.run;
   scenes::Scene scene = scene_of(options, sequence);
@@ -267,7 +265,8 @@ std::vector<Option> files_options(TrackOptions& chosen) {
   return {
       {"particles",
        &chosen.particles,
-       "Files, a pattern in quotes such as 'run/p_*.vtp' or p_%04d.ply, a folder, or one .pvd; columns x, y, z and, "
+       "Files, a pattern in quotes such as 'run/p_*.vtp' or p_%04d.ply, a folder, one file of many steps, or one .pvd; "
+       "columns x, y, z and, "
        "where there are any, velocity, id, radius",
        {.is_required = true}},
       {"--out", &chosen.run.out, "Run directory (default: output/track_<name of the files>); see --overwrite"},
