@@ -129,7 +129,7 @@ class Hdf5Particles {
     add_point_data(all_, group, file_, arrays);
     std::vector<ParticleTable> tables = tables_from_arrays(arrays, name_);
     for (ParticleTable& table : tables) {
-      table.format = "HDF5";
+      table.format = found_.size() == 1 ? "HDF5" : fmt::format("HDF5, {} of {} groups", group.path, found_.size());
       table.polygons = polygons_in(all_, group.path);
     }
     if (tables.size() == 1 && !tables.front().time) tables.front().time = time_of_file(all_, group, file_);

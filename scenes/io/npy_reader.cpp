@@ -105,13 +105,11 @@ std::vector<ParticleTable> parse_npz(std::string_view bytes, const std::string& 
     tables = tables_from_arrays(arrays, name);
   } catch (const InputError&) {
     if (pickled.empty()) throw;
-    throw InputError(
-        fmt::format("{}: \"{}\" is a pickled Python object, which only Python can read. PySPH writes such files; with "
-                    "--output-format "
-                    "hdf5, or by pysph dump_vtk, it writes what FlowSkin reads, or convert the file: d = "
-                    "pysph.solver.utils.load(FILE)"
-                    "['arrays']['fluid']; numpy.savez(OUT, x=d.x, y=d.y, z=d.z, u=d.u, v=d.v, w=d.w)",
-                    name, pickled));
+    throw InputError(fmt::format(
+        "{}: \"{}\" is a pickled Python object, which only Python can read. PySPH writes such files where h5py is "
+        "missing; with it (python3-h5py) it writes .hdf5, which FlowSkin reads. Or convert the file: d = "
+        "pysph.solver.utils.load(FILE)['arrays']['fluid']; numpy.savez(OUT, x=d.x, y=d.y, z=d.z, u=d.u, v=d.v, w=d.w)",
+        name, pickled));
   }
   name_format(tables, "NumPy archive");
   return tables;

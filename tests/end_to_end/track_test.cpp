@@ -143,6 +143,15 @@ TEST_F(TrackCommand, WorksWithoutIdsAndVelocities) {
   }
 }
 
+TEST_F(TrackCommand, ASingleFileIsOneSurface) {
+  const auto result = run_flowskin({"track", (folder_ / "run/particles/frame_0000.ply").string(), "--out",
+                                    (folder_ / "one").string(), "--no-pictures"});
+  EXPECT_EQ(result.status, 0) << result.output;
+  EXPECT_NE(result.output.find("a single frame"), std::string::npos) << result.output;
+  EXPECT_TRUE(fs::exists(folder_ / "one/surface/frame_0000.ply"));
+  EXPECT_FALSE(fs::exists(folder_ / "one/surface/frame_0001.ply"));
+}
+
 TEST_F(TrackCommand, SaysWhatIsWrong) {
   const auto expect_error = [](const std::vector<std::string>& arguments, const std::string& words) {
     const auto result = run_flowskin(arguments);
@@ -153,7 +162,6 @@ TEST_F(TrackCommand, SaysWhatIsWrong) {
   expect_error({"track"}, "particles");
   expect_error({"track", particles}, "name one kind");
   expect_error({"track", particles + "/nothing_*.ply"}, "no file matches");
-  expect_error({"track", particles + "/frame_0000.ply"}, "only file");
   expect_error({"track", particles + "/*.ply", "--out", (folder_ / "run").string()}, "give another folder");
   expect_error({"track", particles + "/*.ply", "--radius", "-1"}, "--radius");
   expect_error({"track", particles + "/*.ply", "--radius", "9"}, "--radius and --spacing set it");

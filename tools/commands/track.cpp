@@ -242,7 +242,9 @@ int track(const TrackOptions& options) {
   if (options.list) return list_files(sequence);
   for (const std::string& warning : sequence.warnings) warn(warning);
   tell(options, fmt::format("{} {} from {}, one every {:.6g} s", sequence.places.size(),
-                            sequence.places.front().is_only_step ? "files" : "time steps",
+                            sequence.places.size() == 1            ? "file"
+                            : sequence.places.front().is_only_step ? "files"
+                                                                   : "time steps",
                             sequence.places.front().file.string(), sequence.interval));
   for (const std::string& note : sequence.notes) tell(options, note);
   RunOptions run = options.run;

@@ -192,9 +192,13 @@ def fill_steps(file):
 
 
 def fill_pysph(file):
+    """As pysph.solver.output.HDFOutput does: what is not stored is an empty array."""
     for name in ("fluid", "walls"):
-        fill_group(file.create_group(f"particles/{name}/arrays"), 0, ("x", "y", "z", "u", "v", "w", "gid"))
-    file["solver_data/t"] = 0.75
+        arrays = file.create_group(f"particles/{name}/arrays")
+        fill_group(arrays, 0, ("x", "y", "z", "u", "v", "w", "gid"))
+        arrays.create_dataset("au", (0,))
+        file[f"particles/{name}/constants/rho0"] = [1000.0]
+    file.create_group("solver_data").attrs["t"] = 0.75
 
 
 def fill_plain(file):
