@@ -1,0 +1,10 @@
+// Particle files of any format, by what they start with; the corpus is that of tests/scenes/data/anyone.
+#include "scenes/io/particle_file.h"
+#include "tests/fuzz/fuzz.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return flowskin::fuzz::read(data, size, [](std::string_view bytes) {
+    for (const auto& step : flowskin::scenes::parse_particle_steps(bytes, "fuzz"))
+      flowskin::scenes::particles_of_file(step, "fuzz");
+  });
+}
