@@ -225,6 +225,21 @@ TEST(AnyonesFiles, MembersOfGzipFollowOneAnother) {
   EXPECT_THAT(message_of<InputError>([&] { gunzipped(bytes.substr(0, 60), "a"); }), HasSubstr("truncated"));
 }
 
+TEST_F(IoTest, ACollectionOfWindowsNamesItsFiles) {
+  std::filesystem::create_directory(path("dat\xC3\xA9 & co"));
+  for (const char* name : {"step_0.vtp", "step_1.vtp"})
+    std::filesystem::copy(data_file(name), path("dat\xC3\xA9 & co") / name);
+  RecordedSpec spec;
+  spec.files = {
+      write_text("a.pvd",
+                 "<VTKFile type=\"Collection\"><Collection>"
+                 "<DataSet timestep=\"0\" file=\"dat&#xE9; &amp; co\\step_0.vtp\"/>"
+                 "<DataSet timestep=\"0.25\" file=\"dat&#233; &amp; co\\step_1.vtp\"/></Collection></VTKFile>")};
+  const ParticleSequence sequence = open_sequence(spec, "/");
+  EXPECT_THAT(sequence.times, ElementsAre(0, 0.25));
+  for (const std::size_t k : {0, 1}) expect_particles(read_sequence_file(sequence, k), k, {"a.pvd", 2, true, true});
+}
+
 /// A run over the steps of one file is saved in the middle and goes on; another file is refused.
 TEST_F(IoTest, AFileOfManyStepsCanBeResumed) {
   std::string text = read_bytes(data_file("plain.dump"));
