@@ -82,7 +82,8 @@ std::string with_checksum(std::string bytes) {
   return bytes;
 }
 
-/// A state that does not fit is refused. All inputs go into the same two: what an earlier one left there must not matter.
+/// A state that does not fit is refused. All inputs go into the same two: what an earlier one left there must not
+/// matter.
 void restore(StateReader& reader) {
   static Parts parts = make_parts();
   try {
