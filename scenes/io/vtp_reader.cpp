@@ -250,7 +250,7 @@ class VtpParser {
     } catch (const InputError& error) {
       for (const std::string& column : columns) {
         note_fault(table_, column, without_file(error.what()));
-        table_.columns[column].resize(table_.count, std::nan(""));
+        table_.columns.try_emplace(column);  // check_columns fills it up, when so many points turn out to be there
       }
     }
   }

@@ -205,6 +205,14 @@ TEST(OddTables, VtkXmlArraysThatNobodyNeeds) {
       HasSubstr("velocity"));
 }
 
+TEST(OddTables, VtkXmlPointsThatAreNotThereTakeNoMemory) {
+  EXPECT_THAT(error_of("<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"900000000\"><PointData>"
+                       "<DataArray Name=\"T\" type=\"Float32\" format=\"ascii\">1</DataArray></PointData>"
+                       "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0</DataArray>"
+                       "</Points></Piece></PolyData></VTKFile>"),
+              HasSubstr("expected number 4"));
+}
+
 TEST(OddTables, PlyPropertiesThatNobodyNeeds) {
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
