@@ -30,8 +30,10 @@ Groups groups_of_particles(const Groups& all) {
   return found;
 }
 
-/// Groups that are numbered, one a step, in their order; none where they are not.
+/// Groups that are numbered, one a step, in their order; none where they are not. Those of Gadget have the numbers of
+/// kinds of particles.
 Groups steps_in_order(const Groups& groups) {
+  if (last_name(groups.front().path).starts_with("PartType")) return {};
   std::vector<std::string> names;
   for (const Hdf5File::Group& group : groups) {
     names.push_back(last_name(group.path));

@@ -123,7 +123,12 @@ class JsonParticles {
       if (names_positions({key + "x", key + "y"}) || key == "x") table.count = values.size();
     }
     for (const auto& [key, values] : arrays.items()) {
-      if (!values.is_array() || values.size() != table.count) continue;
+      if (values.is_array() && values.size() != table.count && is_velocity_name(key))
+        fail(fmt::format("\"{}\" has {} entries for {} particles", key, values.size(), table.count));
+      if (!values.is_array() || values.size() != table.count) {
+        if (values.is_array() && is_id_name(key)) note_misfit(table, key, values.size());
+        continue;
+      }
       for (std::size_t i = 0; i < values.size(); ++i) add_member(table, key, i, values[i]);
     }
     if (table.columns.empty() && !arrays.empty()) {
@@ -135,6 +140,12 @@ class JsonParticles {
                          fmt::join(keys, ", ")));
     }
     complete(table);
+  }
+
+  /// Ids of another number than the particles matter only where ids are asked for.
+  static void note_misfit(ParticleTable& table, const std::string& key, std::size_t entries) {
+    note_fault(table, key, fmt::format("\"{}\" has {} entries for {} particles", key, entries, table.count));
+    table.columns[key].assign(table.count, std::nan(""));
   }
 
   static void complete(ParticleTable& table) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -101,11 +102,32 @@ void add_array(const NamedArray& array, const ArrayLayout& layout, const ArrayFi
   }
 }
 
-void add_times(const NamedArray& array, std::vector<ParticleTable>& tables) {
+/// What is needed is not left out without a word: velocities of another number than the particles are an error, ids a
+/// fault, which matters where ids are asked for.
+void refuse_misfit(const NamedArray& array, const ArrayLayout& layout, std::vector<ParticleTable>& tables,
+                   const std::string& name) {
+  if (array.shape.empty()) return;
+  const std::string what = fmt::format("the array \"{}\" has the shape {}, which does not fit {} particles{}",
+                                       array.name, shape_text(array.shape), layout.particles,
+                                       layout.has_steps ? fmt::format(" in {} time steps", layout.steps) : "");
+  if (is_velocity_name(array.name)) throw InputError(name + ": " + what);
+  if (!is_id_name(array.name)) return;
+  for (ParticleTable& table : tables) {
+    note_fault(table, array.name, what);
+    table.columns[array.name].assign(table.count, std::nan(""));
+  }
+}
+
+void add_times(const NamedArray& array, const ArrayLayout& layout, std::vector<ParticleTable>& tables,
+               const std::string& name) {
   const std::string plain = plain_column_name(array.name);
   if (plain != "t" && plain != "time" && plain != "times" && plain != "timevalue") return;
-  if (array.values.size() == tables.size())
+  const std::size_t count = array.values.size();
+  if (count == tables.size())
     for (std::size_t k = 0; k < tables.size(); ++k) tables[k].time = array.values[k];
+  else if (count > 1 && tables.size() > 1 && count != layout.particles && count != layout.particles * layout.steps)
+    throw InputError(
+        fmt::format("{}: the array \"{}\" has {} times for {} time steps", name, array.name, count, tables.size()));
 }
 
 /// PySPH's velocity is u, v and w; its gid tells particles apart where it is set at all.
@@ -167,7 +189,8 @@ std::vector<ParticleTable> tables_from_arrays(const std::vector<NamedArray>& giv
     const std::optional<ArrayFit> fit = fit_of(array, *layout);
     if (fit && !fit->per_step && layout->steps > 1) copied += layout->steps * array.values.size();
     if (fit && (fit->per_step || copied <= most_array_copies * entries)) add_array(array, *layout, *fit, tables);
-    add_times(array, tables);
+    if (!fit) refuse_misfit(array, *layout, tables, name);
+    add_times(array, *layout, tables, name);
   }
   return tables;
 }

@@ -256,6 +256,17 @@ bool is_id_name(const std::string& name) {
   return std::any_of(id_names.begin(), id_names.end(), [&](const char* id) { return plain == id; });
 }
 
+bool is_velocity_name(const std::string& name) {
+  const std::string plain = plain_column_name(name);
+  return std::any_of(velocity_names.begin(), velocity_names.end(), [&](const std::string base) {
+    if (plain == base) return true;
+    for (const char* joint : {"", "_"})
+      for (const char axis : std::string("xyz012"))
+        if (plain == base + joint + axis) return true;
+    return false;
+  });
+}
+
 bool names_positions(const std::vector<std::string>& names) {
   std::set<std::string> plain;
   for (const std::string& name : names) plain.insert(plain_column_name(name));

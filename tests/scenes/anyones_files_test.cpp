@@ -9,6 +9,7 @@
 #include "io_fixture.h"
 #include "scene_file_helpers.h"
 #include "scenes/io/inflate.h"
+#include "scenes/io/named_arrays.h"
 #include "scenes/io/particle_file.h"
 #include "scenes/io/read_bytes.h"
 #include "scenes/io/unreadable_formats.h"
@@ -216,6 +217,25 @@ TEST(AnyonesFiles, SaySpotAndExpectation) {
   EXPECT_THAT(error_of_text("[[1, 2, 3], [1, 2]]"), AllOf(HasSubstr("particle 2"), HasSubstr("[x, y, z]")));
   EXPECT_THAT(error_of_text("[[1, 2, 3],"), HasSubstr("no JSON"));
   EXPECT_THAT(error_of_text("{\"a\": 1}"), HasSubstr("positions"));
+  EXPECT_THAT(error_of_text("{\"positions\": [[1, 2, 3], [1, 2, 4]], \"velocities\": [[0, 0, 0]]}"),
+              HasSubstr("\"velocities\" has 1 entries for 2 particles"));
+}
+
+TEST(AnyonesFiles, ArraysOfAnotherLengthAreNotLeftOutWithoutAWord) {
+  const NamedArray places{"pos", {2, 3}, {0, 0, 0, 1, 0, 0}};
+  const auto error_with = [&](const NamedArray& array) {
+    return message_of<InputError>([&] {
+      for (const ParticleTable& table : tables_from_arrays({places, array}, "a")) particles_of_file(table, "a");
+    });
+  };
+  EXPECT_THAT(error_with({"vel", {1, 3}, {0, 0, 0}}), AllOf(HasSubstr("\"vel\""), HasSubstr("1 x 3")));
+  EXPECT_THAT(error_with({"id", {3}, {0, 1, 2}}), HasSubstr("3, which does not fit 2 particles"));
+  EXPECT_EQ(tables_from_arrays({places, {"mass", {3}, {0, 1, 2}}}, "a").front().columns.count("mass"), 0u);
+  const NamedArray steps{"pos", {2, 1, 3}, {0, 0, 0, 1, 0, 0}};
+  EXPECT_THAT(message_of<InputError>([&] {
+                tables_from_arrays({steps, {"time", {3}, {0, 1, 2}}}, "a");
+              }),
+              HasSubstr("3 times for 2 time steps"));
 }
 
 TEST(AnyonesFiles, MembersOfGzipFollowOneAnother) {
