@@ -253,7 +253,7 @@ Candidate read_all(const std::vector<std::string>& names, const Reading& reading
 /// Names that leave no doubt need no words.
 std::string note_on(const Candidate& candidate, const std::vector<std::string>& names, const NameOrder& result) {
   if (names.size() < 2) return "";
-  const std::string first = names[result.order.front()], last = names[result.order.back()];
+  const std::string &first = names[result.order.front()], &last = names[result.order.back()];
   if (!candidate.chosen)
     return fmt::format("the names differ in more than one number: the files are in natural order, from {} to {}", first,
                        last);

@@ -286,9 +286,7 @@ class SequenceOpener {
     using Ids = ParticleSequence::Ids;
     if (spec_.ids == RecordedSpec::Ids::none) {
       sequence_.ids = Ids::none;
-    } else if (spec_.ids == RecordedSpec::Ids::order) {
-      sequence_.ids = Ids::order;
-    } else if (!sequence_.first.has_ids && sequence_.places.size() == 1) {
+    } else if (spec_.ids == RecordedSpec::Ids::order || (!sequence_.first.has_ids && sequence_.places.size() == 1)) {
       sequence_.ids = Ids::order;
     } else if (!sequence_.first.has_ids) {
       sequence_.ids = Ids::none;
