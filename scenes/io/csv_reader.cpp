@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/number_words.h"
 #include "scenes/io/particle_columns.h"
+#include "scenes/io/time_columns.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -112,14 +114,26 @@ std::string_view without_mark(std::string_view line) {
   return line;
 }
 
-/// A line such as "Time: 0.25 s" or "# time = 0.25".
-std::optional<double> time_in_line(std::string_view line) {
+/// What a line such as "Time: 0.25 s", "# t = 0.25" or "# frame 3" says.
+struct TimeRemark {
+  bool is_step = false;
+  double value = 0;  ///< s; of steps: which
+};
+
+std::optional<TimeRemark> time_in_line(std::string_view line) {
+  constexpr std::size_t longest_name = 40;
   line = without_mark(line);
-  if (line.size() < 5 || plain_column_name(std::string(line.substr(0, 4))) != "time") return std::nullopt;
-  line.remove_prefix(4);
+  const std::size_t end = line.find_first_of(":=,;0123456789+-");
+  if (end == 0 || end > longest_name) return std::nullopt;
+  std::string name(line.substr(0, end));
+  std::erase(name, '"');
+  const auto meaning = time_name(name);
+  if (!meaning) return std::nullopt;
+  line.remove_prefix(end);
   skip_space(line, " \t:=,;\"");
   double value = 0;
-  return take_number(line, value) ? std::optional(value) : std::nullopt;
+  if (!take_number(line, value) || !std::isfinite(value)) return std::nullopt;
+  return TimeRemark{meaning->is_step, meaning->is_step ? value : value * meaning->unit};
 }
 
 /// Values of one column.
@@ -139,13 +153,20 @@ class CsvParser {
     find_names();
     std::string_view line;
     while (lines_.next(line)) {
-      if (!line.empty() && line.front() != '#') read_row(line);
+      if (line.empty()) continue;
+      if (line.front() != '#') {
+        begin_step();
+        read_row(line);
+      } else if (const auto remark = time_in_line(line); remark && (!pending_ || pending_->is_step)) {
+        pending_ = remark;
+      }
     }
     ParticleTable table;
     table.format = "CSV";
     table.count = rows_;
-    table.time = time_;
     for (CsvColumn& column : columns_) add_column(table, column);
+    if (remark_ && !remark_->is_step && remarked_.empty()) table.time = remark_->value;
+    if (!remarked_.empty()) add_remarked_steps(table);
     return table;
   }
 
@@ -161,13 +182,13 @@ class CsvParser {
     std::string_view line;
     for (std::size_t k = 0; k < longest_preface && lines.next(line); ++k) {
       const std::string_view words = without_mark(line);
-      if (const auto time = time_in_line(line)) time_ = time;
+      if (const auto remark = time_in_line(line); remark && (!remark_ || remark_->is_step)) remark_ = remark;
       if (words.empty() || !names_positions(cells_of(words, find_separator(words)))) continue;
       take_names(words, lines.number());
       lines_ = lines;
       return;
     }
-    time_.reset();
+    remark_.reset();
     for (lines = lines_; lines.next(line);) {
       if (line.empty() || line.front() == '#') continue;
       const std::vector<std::string> cells = cells_of(line, find_separator(line));
@@ -186,6 +207,24 @@ class CsvParser {
     const std::vector<std::string> names = cells_of(line, separator_);
     if (names.size() > most_columns) fail(number, "there are more than 4096 columns; this is no particle table");
     for (const std::string& name : names) columns_.push_back({name, is_id_name(name), {}, {}, {}});
+  }
+
+  /// A row after a remark about time: it begins another time step, or the first.
+  void begin_step() {
+    if (!pending_) return;
+    const TimeRemark remark = *std::exchange(pending_, std::nullopt);
+    if (rows_ > 0 && !remark_)
+      fail(lines_.number(),
+           "a remark about time stands before this row, but none before the first row: what is its time?");
+    if (remark_ && remark_->is_step != remark.is_step) return;
+    if (rows_ > 0) remarked_.resize(rows_, remark_->value);
+    remark_ = remark;
+  }
+
+  void add_remarked_steps(ParticleTable& table) {
+    remarked_.resize(rows_, remark_->value);
+    const std::string name = remark_->is_step ? "step" : "time";
+    if (!table.columns.contains(name)) table.columns[name] = std::move(remarked_);
   }
 
   void read_row(std::string_view line) {
@@ -232,8 +271,6 @@ class CsvParser {
       return note_fault(table, column.name,
                         fmt::format("line {}: the column \"{}\" is there twice", names_line_, column.name));
     if (!column.fault.empty()) note_fault(table, column.name, column.fault);
-    if (rows_ > 0 && plain_column_name(column.name) == "time" && column.fault.empty())
-      table.time = column.values.front();
     if (column.is_id && column.ids.size() == rows_) table.ids[column.name] = std::move(column.ids);
     table.columns[column.name] = std::move(column.values);
   }
@@ -243,7 +280,8 @@ class CsvParser {
   std::size_t names_line_ = 0, rows_ = 0;
   char separator_ = ',';
   std::vector<CsvColumn> columns_;
-  std::optional<double> time_;
+  std::optional<TimeRemark> remark_, pending_;  // of the present step, of the next
+  std::vector<double> remarked_;                // of each row of the steps so far, where remarks stand between rows
 };
 
 }  // namespace

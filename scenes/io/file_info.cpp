@@ -194,6 +194,7 @@ FileInfo describe_file(const std::filesystem::path& file) {
   }
   const std::vector<ParticleTable> steps = read_particle_steps(file);
   describe_steps(info, steps);
+  for (const std::string& note : steps.front().notes) info.lines.push_back("note: " + note);
   if (steps.front().polygons > 0)
     describe_mesh(info, file.string(), steps.front());
   else

@@ -14,9 +14,11 @@
 #include <utility>
 
 #include "common/errors.h"
+#include "common/number_text.h"
 #include "scenes/io/number_words.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/io/row_filter.h"
+#include "scenes/io/time_columns.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -183,19 +185,29 @@ std::vector<T> reordered(const std::vector<T>& values, const std::vector<std::si
   return result;
 }
 
+/// @throws InputError where an id is there twice, in several time steps perhaps.
+[[noreturn]] void refuse_twins(std::uint64_t id, const ParticleTable& table, const std::vector<std::uint64_t>& ids,
+                               const std::string& name) {
+  if (const std::string column = column_that_separates(table, ids); !column.empty())
+    throw InputError(fmt::format(
+        "{}: two particles have the id {}, but not the same \"{}\": the file seems to hold several time steps. If "
+        "\"{}\" tells them apart, call it \"time\" (s) or \"step\"; or choose one, as by --keep '\"{}\" == {}'",
+        name, id, column, column, column, number_text(table.columns.at(column).front())));
+  throw InputError(fmt::format(
+      "{}: two particles have the id {}: every particle needs its own, the same in every file of a sequence; "
+      "--skip-duplicates keeps the first, --no-ids does without ids",
+      name, id));
+}
+
 /// @throws InputError where an id is there twice.
-void sort_by_id(ParticleState& state, const std::string& name) {
+void sort_by_id(ParticleState& state, const ParticleTable& table, const std::string& name) {
   std::vector<std::size_t> order(state.ids.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return state.ids[a] < state.ids[b]; });
-  state.ids = reordered(state.ids, order);
+  const std::vector<std::uint64_t> in_file = std::exchange(state.ids, reordered(state.ids, order));
   const auto twice = std::adjacent_find(state.ids.begin(), state.ids.end());
-  if (twice != state.ids.end())
-    throw InputError(
-        name + ": two particles have the id " + std::to_string(*twice) +
-        ": every particle needs its own, the same in every file of a sequence; --skip-duplicates keeps the first, "
-        "--no-ids does without ids");
+  if (twice != state.ids.end()) refuse_twins(*twice, table, in_file, name);
   state.positions = reordered(state.positions, order);
   state.velocities = reordered(state.velocities, order);
   state.rest_positions = reordered(state.rest_positions, order);
@@ -265,6 +277,21 @@ bool is_velocity_name(const std::string& name) {
         if (plain == base + joint + axis) return true;
     return false;
   });
+}
+
+bool is_property_name(const std::string& name) {
+  const std::string plain = plain_column_name(name);
+  const auto is_of = [&](Names names, bool is_vector) {
+    return std::any_of(names.begin(), names.end(), [&](const std::string base) {
+      if (!is_vector) return plain == base;
+      for (const char* joint : {"", "_"})
+        for (const char axis : std::string("xyz012"))
+          if (plain == base + joint + axis && (!base.empty() || *joint == '\0')) return true;
+      return false;
+    });
+  };
+  return is_of(position_names, true) || is_of(velocity_names, true) || is_of(rest_names, true) ||
+         is_of(radius_names, false) || is_of(density_names, false);
 }
 
 bool names_positions(const std::vector<std::string>& names) {
@@ -385,7 +412,7 @@ ParticleFile particles_from_table(const ParticleTable& all, const std::string& n
   state.velocities = vectors(velocity, std::vector<Vec3>(table.count, Vec3::Zero()), "velocity", "m/s", name);
   state.rest_positions = vectors(rest, state.positions, "rest position", "m", name);
   state.densities = usable_densities(densities, densities != nullptr && columns.is_faulty(*densities), table.count);
-  if (file.has_ids) sort_by_id(state, name);
+  if (file.has_ids) sort_by_id(state, table, name);
   return file;
 }
 

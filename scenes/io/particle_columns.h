@@ -34,6 +34,8 @@ std::string plain_column_name(const std::string& name);
 bool is_id_name(const std::string& name);
 /// Whether a column, or an array of vectors, of this name holds velocities or a component of them.
 bool is_velocity_name(const std::string& name);
+/// Whether a column of this name holds places, velocities, radii or densities, or a component of them.
+bool is_property_name(const std::string& name);
 /// Whether columns of these names hold positions, in two dimensions at least.
 bool names_positions(const std::vector<std::string>& names);
 

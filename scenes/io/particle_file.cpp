@@ -19,6 +19,7 @@
 #include "scenes/io/npy_reader.h"
 #include "scenes/io/ply_reader.h"
 #include "scenes/io/read_bytes.h"
+#include "scenes/io/time_columns.h"
 #include "scenes/io/unreadable_formats.h"
 #include "scenes/io/utf16.h"
 #include "scenes/io/vtk_reader.h"
@@ -54,7 +55,7 @@ std::vector<ParticleTable> parse_text_steps(std::string_view bytes, const std::s
   if (is_lammps_dump(bytes)) return parse_lammps_dump(bytes, name);
   if (start.starts_with('{') || start.starts_with('[')) return parse_json_particles(bytes, name);
   if (is_xyz(bytes)) return parse_xyz(bytes, name);
-  return steps_by_time_column(parse_csv(bytes, name));
+  return one_step(parse_csv(bytes, name));
 }
 
 /// @param level of gzip within gzip
@@ -90,7 +91,9 @@ std::string particle_extensions() { return fmt::format("{}", fmt::join(extension
 std::vector<ParticleTable> parse_particle_steps(std::string_view bytes, const std::string& name) {
   std::vector<ParticleTable> steps = parse_steps(bytes, name, 0);
   if (steps.empty()) throw InputError(name + ": there are no particles in the file");
-  return steps;
+  if (steps.size() > 1) return steps;
+  const bool is_text = steps.front().format == "CSV" || steps.front().format == "JSON";
+  return steps_by_time_column(std::move(steps.front()), is_text ? TableKind::text : TableKind::arrays);
 }
 
 ParticleTable parse_particle_table(std::string_view bytes, const std::string& name) {

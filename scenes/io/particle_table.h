@@ -25,6 +25,7 @@ struct ParticleTable {
   std::optional<std::uint64_t> step;          ///< The number of the time step, where the file counts steps.
   double radius = 0;                          ///< Of all particles (m); 0 where the file does not say.
   std::size_t polygons = 0;                   ///< Faces of a mesh: then these are no particles.
+  std::vector<std::string> notes;             ///< How it was read, where there is doubt; one sentence each.
   std::vector<std::array<int, 3>> triangles;  ///< These faces as triangles, where the format is VTK XML.
 };
 

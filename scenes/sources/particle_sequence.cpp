@@ -76,7 +76,10 @@ class SequenceOpener {
                                    spec_.frame_interval, shortest_interval));
     if (!take_collection()) take_files();
     sequence_.needs = needs_of(spec_);
-    if (sequence_.tables->steps(sequence_.places.front().file).size() > 1) take_steps();
+    const std::vector<ParticleTable>& steps = sequence_.tables->steps(sequence_.places.front().file);
+    const std::vector<std::string>& notes = steps.front().notes;
+    sequence_.notes.insert(sequence_.notes.end(), notes.begin(), notes.end());
+    if (steps.size() > 1) take_steps();
     const ParticleTable table = sequence_.tables->table(sequence_.places.front());
     sequence_.first = particles_of_file(table, sequence_.places.front().name(), sequence_.needs);
     if (sequence_.places.size() == 1)
