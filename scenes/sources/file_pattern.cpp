@@ -1,6 +1,7 @@
 #include "scenes/sources/file_pattern.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
@@ -11,12 +12,16 @@
 #include "common/number_text.h"
 #include "scenes/io/particle_file.h"
 #include "scenes/nearest_name.h"
+#include "scenes/sources/name_groups.h"
 #include "scenes/sources/name_order.h"
 
 namespace flowskin::scenes {
 namespace {
 
 using Paths = std::vector<std::filesystem::path>;
+
+/// In names of groups of files.
+constexpr const char* fluid_words[] = {"fluid", "liquid", "water", "particle"};
 
 /// Of a file, in bytes.
 constexpr std::size_t longest_name = 255;
@@ -239,6 +244,42 @@ std::vector<std::string> telling_names(const Paths& paths) {
   return names;
 }
 
+/// What a group is called by, first in the order: what most programs call the fluid.
+bool is_called_fluid(const std::string& pattern) {
+  std::string small = pattern;
+  for (char& c : small) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return std::any_of(std::begin(fluid_words), std::end(fluid_words),
+                     [&](const char* word) { return small.find(word) != std::string::npos; });
+}
+
+/// @throws InputError where the names are those of several bodies, which have no order together
+/// @param listed the user named every file
+void refuse_several_bodies(const Paths& paths, const std::vector<std::string>& names, bool listed) {
+  constexpr std::size_t most_named = 6;
+  std::vector<NameGroup> groups = groups_of_names(names);
+  const bool any_series = std::any_of(groups.begin(), groups.end(), [](const auto& g) { return g.names.size() > 1; });
+  if (!are_several_bodies(groups, names) || (listed && !any_series)) return;
+  std::stable_sort(groups.begin(), groups.end(), [](const NameGroup& a, const NameGroup& b) {
+    return std::pair(is_called_fluid(a.pattern), a.names.size()) >
+           std::pair(is_called_fluid(b.pattern), b.names.size());
+  });
+  std::vector<std::string> told;
+  for (const NameGroup& group : groups)
+    told.push_back(group.names.size() == 1 ? names[group.names.front()]
+                                           : fmt::format("{} ({} files)", group.pattern, group.names.size()));
+  if (told.size() > most_named) told[most_named - 1] = fmt::format("{} more", told.size() - most_named + 1);
+  told.resize(std::min(told.size(), most_named));
+  const NameGroup& one = groups.front();
+  std::filesystem::path place = paths[one.names.front()];  // without what `names` tells
+  const std::filesystem::path told_parts = names[one.names.front()];
+  for (auto part = told_parts.begin(); part != told_parts.end(); ++part) place = place.parent_path();
+  const std::string example = one.names.size() == 1 ? names[one.names.front()] : one.pattern;
+  throw InputError(
+      fmt::format("{}: these are {} groups of files, not one sequence: {}. Give those of one body, for example '{}'{}",
+                  place.string(), groups.size(), fmt::join(told, ", "), (place / example).string(),
+                  any_series ? "" : "; the order of files is told by numbers in their names"));
+}
+
 std::string listed(const std::vector<double>& numbers) {
   std::string text;
   for (std::size_t i = 0; i < std::min<std::size_t>(numbers.size(), 3); ++i)
@@ -252,7 +293,8 @@ void count_steps(const NameOrder& names, NumberedFiles& files) {
   if (!raster.is_regular || raster.stride == 0) {
     if (files.paths.size() > 1)
       files.notes.push_back(fmt::format(
-          "the numbers in the names ({}) have no even steps: they only give the order, and no file counts as missing",
+          "the numbers in the names ({}) have no even steps: they only give the order, no file counts as missing, and "
+          "all are the same time apart; --times-in-names would take the numbers for times",
           listed(names.numbers)));
     return;
   }
@@ -275,7 +317,10 @@ NumberedFiles files_of_patterns(const std::vector<std::string>& names) {
   const auto twice = std::adjacent_find(files.paths.begin(), files.paths.end());
   if (twice != files.paths.end()) throw InputError(twice->string() + ": is given twice");
   check_formats(files.paths);
-  const NameOrder names_in_order = order_of_names(telling_names(files.paths));
+  const std::vector<std::string> telling = telling_names(files.paths);
+  const NameOrder names_in_order = order_of_names(telling);
+  if (names_in_order.numbers.empty() && !names_in_order.is_clock)
+    refuse_several_bodies(files.paths, telling, names.size() == files.paths.size());
   if (names_in_order.twins)
     throw InputError(fmt::format("{}: has the same number as {}; a sequence has one file per number",
                                  files.paths[names_in_order.twins->second].string(),

@@ -255,8 +255,8 @@ std::string note_on(const Candidate& candidate, const std::vector<std::string>& 
   if (names.size() < 2) return "";
   const std::string &first = names[result.order.front()], &last = names[result.order.back()];
   if (!candidate.chosen)
-    return fmt::format("the names differ in more than one number: the files are in natural order, from {} to {}", first,
-                       last);
+    return fmt::format("the names differ in {}: the files are in natural order, from {} to {}",
+                       candidate.same_texts ? "more than one number" : "letters", first, last);
   bool plain = candidate.varying.size() == 1;
   std::string before;
   for (const Parts& name : candidate.names) {
@@ -269,6 +269,33 @@ std::string note_on(const Candidate& candidate, const std::vector<std::string>& 
   return fmt::format("the files are in the order of the number after \"{}\" in their names: {}, {}{}", before,
                      number(result.order[0]), number(result.order[1]),
                      names.size() > 2 ? fmt::format(" ... {}", number(result.order.back())) : "");
+}
+
+using Twins = std::pair<std::size_t, std::size_t>;
+
+/// Two names whose one number that differs is the same: 0.1 and 0.10.
+std::optional<Twins> twins_of(const Candidate& candidate) {
+  if (!candidate.same_texts || candidate.varying.size() != 1) return std::nullopt;
+  const std::size_t column = candidate.varying.front();
+  const std::vector<std::size_t> order = sorted_by(candidate, column);
+  const auto same = std::adjacent_find(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return compare(candidate.names[a].numbers[column], candidate.names[b].numbers[column]) == 0;
+  });
+  return same == order.end() ? std::nullopt : std::optional<Twins>({same[0], same[1]});
+}
+
+/// 0.1, 0.2, 0.10 as 1, 2, 10: that must not be taken for granted, and times come only once.
+void doubt_counters(const Candidate& candidate, const std::vector<std::string>& names, const Twins& same,
+                    NameOrder& result) {
+  const Parts& first = candidate.names.front();
+  const std::size_t column = *candidate.chosen;
+  const bool below_one = column > 0 && first.texts[column] == "." && first.numbers[column - 1].whole.empty();
+  const bool like_time = below_one || first.texts.front().empty();
+  const bool is_even = candidate.raster.is_regular && candidate.raster.missing == 0;
+  if (like_time && !is_even) result.twins = same;
+  result.note = fmt::format(
+      "{} and {} would be the same number with decimals: the digits behind the point are counted as whole numbers",
+      names[same.first], names[same.second]);
 }
 
 /// Whole numbers: the largest stride that fits them all.
@@ -327,19 +354,24 @@ NameOrder order_of_names(const std::vector<std::string>& names) {
   NameOrder result;
   if (names.empty()) return result;
   std::optional<Candidate> best;
+  std::optional<Twins> same_decimals;
   for (const Reading& reading : readings) {
     Candidate candidate = read_all(names, reading);
+    if (!best) same_decimals = twins_of(candidate);
     if (!best || candidate.rank < best->rank) best = std::move(candidate);
   }
   if (best->chosen) {
     result = numbers_in_order(*best, *best->chosen);
   } else {
     result.order = sorted_by(*best, std::nullopt);
+    result.is_clock = best->same_texts && best->varying.size() > 1 && is_clock(*best);
     for (std::size_t i = 0; i + 1 < result.order.size() && !result.twins; ++i)
       if (compare(best->names[result.order[i]], best->names[result.order[i + 1]]) == 0)
         result.twins = {result.order[i], result.order[i + 1]};
   }
   result.note = note_on(*best, names, result);
+  if (same_decimals && best->chosen) doubt_counters(*best, names, *same_decimals, result);
+  if (same_decimals && !best->chosen) result.twins = same_decimals;
   return result;
 }
 

@@ -16,6 +16,7 @@ struct NameOrder {
   /// The same where all are whole and can be counted with.
   std::vector<std::int64_t> counts;
   bool looks_like_times = false;  ///< Decimals or exponents are in the names.
+  bool is_clock = false;          ///< The numbers are a date or a time of day.
   /// How the names were read, where they can be read in more than one way; empty where there is but one.
   std::string note;
   /// Two names (by index) with the same number.

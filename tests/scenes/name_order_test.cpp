@@ -60,8 +60,14 @@ TEST(NameOrder, DecimalsAndExponents) {
 
 TEST(NameOrder, CountersAfterAPointAreNoDecimals) {
   expect_order({"v1.8.csv", "v1.9.csv", "v1.10.csv", "v1.11.csv"}, "");
-  expect_order({"run1.1", "run1.2", "run1.3", "run1.10"}, "", 6);
+  expect_order({"run1.1", "run1.2", "run1.3", "run1.10"}, "counted as whole numbers", 6);
   expect_order({"s1e1.ply", "s1e2.ply", "s1e9.ply", "s1e10.ply", "s1e11.ply"}, "", 6);
+}
+
+TEST(NameOrder, TheSameTimeTwiceIsNotTakenForACounter) {
+  for (const Names& names : {Names{"0.1/p.csv", "0.10/p.csv", "0.2/p.csv"}, Names{"1.5", "1.50", "2.5"},
+                             Names{"t_0.1.csv", "t_0.10.csv", "t_0.2.csv"}, Names{"0.25.csv", "0.250.csv", "0.5.csv"}})
+    EXPECT_TRUE(order_of_names(names).twins) << names[1];
 }
 
 TEST(NameOrder, Signs) {
@@ -86,7 +92,7 @@ TEST(NameOrder, SeveralNumbers) {
 }
 
 TEST(NameOrder, LettersThatDifferGiveNaturalOrder) {
-  expect_order({"take2_a.x", "take2_b.x", "take10_b.x"}, "natural");
+  expect_order({"take2_a.x", "take2_b.x", "take10_b.x"}, "differ in letters");
   const NameOrder twins = order_of_names({"f_1.csv", "f_01.csv"});
   EXPECT_TRUE(twins.twins.has_value());
   EXPECT_EQ(order_of_names({"one.csv"}).note, "");

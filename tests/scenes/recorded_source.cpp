@@ -302,6 +302,40 @@ TEST_F(RecordedSourceTest, FilesWithoutEndsAndOneFolderATime) {
   EXPECT_EQ(open_sequence(spec, folder_.string()).times, (std::vector<double>{0, 1.5, 9.5}));
 }
 
+TEST_F(RecordedSourceTest, SeveralBodiesInOnePlaceAreNoSequence) {
+  const auto error_in = [&](const std::string& folder, const std::vector<std::string>& names,
+                            const std::string& pattern = "") {
+    for (const std::string& name : names) {
+      std::filesystem::create_directories((folder_ / folder / name).parent_path());
+      std::ofstream(folder_ / folder / name) << "x,y,z\n1,2,3\n";
+    }
+    return error_of([&] { files_of_patterns({(folder_ / folder / pattern).string()}); });
+  };
+  EXPECT_THAT(error_in("a", {"boundary_0001.csv", "boundary_0002.csv", "fluid_0001.csv", "fluid_0002.csv"}),
+              AllOf(HasSubstr("2 groups"), HasSubstr("boundary_*.csv (2 files)"), HasSubstr("a/fluid_*.csv'")));
+  EXPECT_THAT(error_in("b", {"PartFluid_0000.vtk", "PartFluid_0001.vtk", "PartBound_0000.vtk", "PartBound_0001.vtk"}),
+              HasSubstr("b/PartFluid_*.vtk'"));
+  EXPECT_THAT(error_in("c", {"f_1.csv", "f_2.csv", "f_3.csv", "walls.csv"}),
+              AllOf(HasSubstr("f_*.csv (3 files)"), HasSubstr("walls.csv")));
+  EXPECT_THAT(error_in("d", {"fluid.csv", "boundary.csv"}), AllOf(HasSubstr("2 groups"), HasSubstr("d/fluid.csv'")));
+  // Bodies, or pieces of one moment, that are told apart by a number.
+  EXPECT_THAT(
+      error_in("e", {"body0_01.csv", "body0_02.csv", "body0_03.csv", "body1_01.csv", "body1_02.csv", "body1_03.csv"}),
+      AllOf(HasSubstr("body0_*.csv (3 files)"), HasSubstr("body1_*.csv (3 files)")));
+  EXPECT_THAT(error_in("f", {"p_01_r0.csv", "p_01_r1.csv", "p_02_r0.csv", "p_02_r1.csv", "p_03_r0.csv", "p_03_r1.csv"}),
+              HasSubstr("p_*_r0.csv (3 files)"));
+  EXPECT_THAT(error_in("g", {"fluid/1.csv", "fluid/2.csv", "wall/1.csv", "wall/2.csv"}, "*/*.csv"),
+              HasSubstr("g/fluid/*.csv'"));
+  // A pattern that fits the one group only.
+  EXPECT_THAT(error_in("h", {"1.csv", "2.csv", "3.csv", "wall_1.csv", "wall_2.csv"}), HasSubstr("h/%d.csv'"));
+  EXPECT_EQ(files_of_patterns({(folder_ / "h/%d.csv").string()}).paths.size(), 3U);
+  EXPECT_EQ(files_of_patterns({(folder_ / "a/fluid_*.csv").string()}).paths.size(), 2U);
+  EXPECT_THAT(error_of([&] { files_of_patterns({(folder_ / "a/*.csv").string()}); }), HasSubstr("2 groups"));
+  // Who names every file knows what they are.
+  EXPECT_EQ(files_of_patterns({(folder_ / "d/fluid.csv").string(), (folder_ / "d/boundary.csv").string()}).paths.size(),
+            2U);
+}
+
 TEST_F(RecordedSourceTest, TimesComeFromTheFilesWhereNobodyTellsThem) {
   const auto sequence = [&](const std::string& pattern, double interval = 0) {
     RecordedSpec spec;
