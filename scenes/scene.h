@@ -81,6 +81,10 @@ struct ParticlesSpec {
 /// What a scene says for the best velocity method that its particles allow.
 inline constexpr const char* automatic_velocity = "auto";
 
+/// What a vertex that fairing slides along the surface does with its material: `kept`, it takes that of its new place;
+/// `dragged`, it carries its own along; `automatic`, as suits the velocity method.
+enum class FairingMaterial { automatic, kept, dragged };
+
 /// The tracker's own settings and what a scene says about tracking besides. Here the tracker's lengths count in
 /// spacings and its volumes in cubes of them, as in the scene file: settings_in_metres() gives what the tracker takes.
 struct TrackingSpec : tracking::TrackerSettings {
@@ -91,6 +95,7 @@ struct TrackingSpec : tracking::TrackerSettings {
     max_slip = -1;  // negative: max_slip_of() chooses
   }
   bool enabled = true;
+  FairingMaterial fairing_material = FairingMaterial::automatic;  ///< settings_in_metres() makes fairing_drags of it.
   int steps_per_frame = 2;  ///< Particle states between two frames, one tracker step each.
   bool confidence = false;  ///< Write how well the field determines the velocity.
 };

@@ -1,6 +1,16 @@
 #include "scenes/settings_in_metres.h"
 
 namespace flowskin::scenes {
+namespace {
+
+/// Whether fairing carries the material along. Where it does not, the errors of a rough velocity add up in the rest
+/// positions unsmoothed, and the texture becomes noise.
+bool fairing_drags(FairingMaterial material, const std::string& velocity) {
+  if (material != FairingMaterial::automatic) return material == FairingMaterial::dragged;
+  return velocity != "hybrid" && velocity != "simulation" && velocity != "affine";
+}
+
+}  // namespace
 
 tracking::TrackerSettings settings_in_metres(const Scene& scene) {
   const double spacing = scene.particles.spacing;
@@ -11,6 +21,7 @@ tracking::TrackerSettings settings_in_metres(const Scene& scene) {
   settings.field.weight = field.weight;
   settings.field.threshold = scene.tracking.field.threshold > 0 ? scene.tracking.field.threshold : field.threshold;
   if (settings.velocity == automatic_velocity) settings.velocity = "hybrid";
+  settings.fairing_drags = fairing_drags(scene.tracking.fairing_material, settings.velocity);
   settings.edge_length *= spacing;
   settings.smallest_part = settings.smallest_part * spacing * spacing * spacing;
   settings.max_slip = max_slip_of(scene) * spacing;

@@ -52,9 +52,12 @@ void add_tracking_keys(KeyTable& table, TrackingSpec& tracking) {
                 "Iterations of fairing a step.");
   table.number("tracking.fairing_stiffness", tracking.fairing_stiffness, at_least(0, 1), "",
                "Share of the way to the equilibrium of the springs that an iteration goes.");
-  table.choice<bool>("tracking.fairing_material", tracking.fairing_drags, {{"kept", false}, {"dragged", true}},
-                     "kept: a vertex that slides along the surface takes the material of its new place; dragged: it "
-                     "carries its material along, as in the paper.");
+  table.choice<FairingMaterial>(
+      "tracking.fairing_material", tracking.fairing_material,
+      {{"auto", FairingMaterial::automatic}, {"kept", FairingMaterial::kept}, {"dragged", FairingMaterial::dragged}},
+      "kept: a vertex that slides along the surface takes the material of its new place; dragged: it carries its "
+      "material along, as in the paper; auto: kept with hybrid, simulation and affine, dragged with the others, whose "
+      "velocities are too rough to go without the smoothing.");
   table.choice<bool>("tracking.fairing_springs", tracking.variable_springs, {{"constant", false}, {"variable", true}},
                      "constant: as in the paper; variable: soft where the field determines the velocity well.");
   table.boolean("tracking.confidence", tracking.confidence,

@@ -37,11 +37,40 @@ std::optional<Crossing> cross_row(const Vec3& a, const Vec3& b, const Vec3& c, d
 
 }  // namespace
 
+namespace {
+
+// How a triangle changes the winding number along the row from low x to p.
+int winding_before(const TriangleMesh& mesh, const Triangle& t, const Vec3& p) {
+  const auto crossing = cross_row(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], p.y(), p.z());
+  return crossing && crossing->x <= p.x() ? crossing->sign : 0;
+}
+
+}  // namespace
+
 bool is_inside(const TriangleMesh& mesh, const Vec3& p) {
   int winding = 0;
-  for (const auto& t : mesh.triangles) {
-    const auto crossing = cross_row(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], p.y(), p.z());
-    if (crossing && crossing->x <= p.x()) winding += crossing->sign;
+  for (const auto& t : mesh.triangles) winding += winding_before(mesh, t, p);
+  return winding != 0;
+}
+
+bool InsideTest::operator()(const Vec3& p) const {
+  const auto meets_row = [&p](const Box& box) {
+    return box.min.x() <= p.x() && box.min.y() <= p.y() && p.y() <= box.max.y() && box.min.z() <= p.z() &&
+           p.z() <= box.max.z();
+  };
+  int winding = 0;
+  std::vector<int> open;
+  if (!tree_.nodes().empty()) open.push_back(0);
+  while (!open.empty()) {
+    const int index = open.back();
+    const TriangleTree::Node& node = tree_.nodes()[index];
+    open.pop_back();
+    if (!meets_row(node.box)) continue;
+    if (node.right >= 0) {
+      open.insert(open.end(), {node.right, index + 1});
+      continue;
+    }
+    for (int k = node.begin; k < node.end; ++k) winding += winding_before(mesh_, mesh_.triangles[tree_.order()[k]], p);
   }
   return winding != 0;
 }

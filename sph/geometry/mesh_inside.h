@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "common/triangle_tree.h"
 #include "sph/geometry/triangle_mesh.h"
 
 namespace flowskin::sph {
@@ -18,5 +19,17 @@ std::vector<Vec3> lattice_points_inside(const TriangleMesh& mesh, double spacing
 
 /// Whether a point lies inside a closed mesh, by the same rule.
 bool is_inside(const TriangleMesh& mesh, const Vec3& p);
+
+/// The same answer for many points: a tree finds the triangles that the row through a point can cross.
+class InsideTest {
+ public:
+  /// @param mesh must outlive it unchanged
+  explicit InsideTest(const TriangleMesh& mesh) : mesh_(mesh), tree_(mesh.positions, mesh.triangles) {}
+  bool operator()(const Vec3& p) const;
+
+ private:
+  const TriangleMesh& mesh_;
+  TriangleTree tree_;
+};
 
 }  // namespace flowskin::sph

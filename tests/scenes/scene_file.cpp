@@ -1,6 +1,7 @@
 // What a scene file means: defaults, comments, round trips, the shipped scenes, the documentation.
 #include "scenes/scene_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -250,6 +251,12 @@ TEST(SceneFile, TrackingKeysReachTheTrackersSettings) {
   EXPECT_DOUBLE_EQ(settings.edge_length, 0.05);
   EXPECT_DOUBLE_EQ(settings.smallest_part, 0.008);
   EXPECT_DOUBLE_EQ(settings.max_slip, 0.2);
+  EXPECT_TRUE(settings_of(R"("velocity": "hybrid", "fairing_material": "dragged")").fairing_drags);
+  EXPECT_FALSE(settings_of(R"("velocity": "curvature", "fairing_material": "kept")").fairing_drags);
+  for (const char* name : {"auto", "hybrid", "simulation", "affine"})
+    EXPECT_FALSE(settings_of(fmt::format(R"("velocity": "{}")", name)).fairing_drags) << name;
+  for (const char* name : {"normal", "total", "curvature", "curvature-belyaev", "rigid", "rigid-global"})
+    EXPECT_TRUE(settings_of(fmt::format(R"("velocity": "{}")", name)).fairing_drags) << name;
   EXPECT_EQ(settings_of("").velocity, "hybrid");
   EXPECT_EQ(settings_of("").max_slip, 0);
 }

@@ -186,6 +186,7 @@ TEST(Sinks, PointsInsideMeshes) {
     const double r = (p - Vec3(0.1, 0.2, 0.3)).norm();
     if (r > 0.49 && r < 0.5) continue;
     EXPECT_EQ(is_inside(ball, p), r < 0.49);
+    EXPECT_EQ(InsideTest(ball)(p), r < 0.49);
   }
 }
 

@@ -56,7 +56,7 @@ class StairsRun {
       tracking::TrackerSettings settings = scenes::settings_in_metres(scene_);
       settings.velocity = method;
       settings.max_slip = 0;
-      settings.fairing_drags = true;
+      settings.fairing_drags = true;  // the paper's fairing for all its methods
       walkers_.push_back({method, tracking::Tracker(settings, to_particles(source_->state())), 0, {}, 0, {}});
     }
   }

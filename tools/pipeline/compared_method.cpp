@@ -98,9 +98,9 @@ std::vector<ComparedMethod> methods_to_compare(const std::string& list) {
 
 tracking::TrackerSettings settings_for(const scenes::Scene& scene, const ComparedMethod& method) {
   scenes::Scene changed = scene;
+  changed.tracking.velocity = method.velocity;
   apply(method.settings, method.name, changed.tracking);
   tracking::TrackerSettings settings = scenes::settings_in_metres(changed);
-  settings.velocity = method.velocity;
   settings.max_slip = 0;
   return settings;
 }

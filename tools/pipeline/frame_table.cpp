@@ -10,7 +10,9 @@ double FrameTable::since_last_row(const char* stage) {
 const FrameRow& FrameTable::add_frame(int frame, const scenes::ParticleSource& source, std::size_t particles,
                                       const TrackedSurface* surface, const SurfaceFrame* shown) {
   FrameRow row = clock_.time("statistics", [&] {
-    return statistics_.finish_frame(frame, source, surface ? &surface->tracker() : nullptr, shown);
+    FrameRow measured = statistics_.finish_frame(frame, source, surface ? &surface->tracker() : nullptr, shown);
+    if (shown) measured.volume_outside_walls = walls_.volume_outside(shown->mesh, measured.time);
+    return measured;
   });
   row.overstretched = surface ? surface->textures().overstretched() : 0;
   row.particles = particles;  // of blended states those that are written

@@ -12,6 +12,7 @@
 #include "tools/frame_data.h"
 #include "tools/pipeline/frame_statistics.h"
 #include "tools/pipeline/tracked_surface.h"
+#include "tools/pipeline/volume_outside_walls.h"
 #include "tools/report/frames_csv.h"
 #include "tools/report/stage_clock.h"
 
@@ -19,8 +20,9 @@ namespace flowskin::tools {
 
 class FrameTable {
  public:
-  /// @param clock whose times of each frame go into its row
-  FrameTable(std::filesystem::path file, StageClock& clock) : file_(std::move(file)), clock_(clock) {}
+  /// @param walls of the scene @param clock whose times of each frame go into its row
+  FrameTable(std::filesystem::path file, WallSolids walls, StageClock& clock)
+      : file_(std::move(file)), walls_(std::move(walls)), clock_(clock) {}
 
   /// Adds what happened in one tracker step.
   void add_step(const tracking::TrackerReport& report) { statistics_.add(report); }
@@ -44,6 +46,7 @@ class FrameTable {
   double since_last_row(const char* stage);
 
   std::filesystem::path file_;
+  WallSolids walls_;
   StageClock& clock_;
   FrameStatistics statistics_;
   std::vector<FrameRow> rows_;
