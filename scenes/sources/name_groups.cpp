@@ -119,12 +119,12 @@ std::vector<NameGroup> groups_of_names(const std::vector<std::string>& names) {
       groups.push_back({pattern_of(parts[members.front()], "*", column), std::move(members)});
     return groups;
   }
-  for (const auto& [letters, members] : by_letters) {
-    const NameParts& first = parts[members.front()];
+  for (const auto& group : by_letters) {
+    const NameParts& first = parts[group.second.front()];
     const bool ambiguous = std::any_of(by_letters.begin(), by_letters.end(), [&](const auto& other) {
-      return other.second != members && star_would_take(first, parts[other.second.front()]);
+      return &other != &group && star_would_take(first, parts[other.second.front()]);
     });
-    groups.push_back({pattern_of(first, ambiguous ? "%d" : "*", std::nullopt), members});
+    groups.push_back({pattern_of(first, ambiguous ? "%d" : "*", std::nullopt), group.second});
   }
   return groups;
 }
