@@ -132,10 +132,14 @@ struct RenderSpec {
   double exposure = 1;
 };
 
+/// Which frames are compared with a fresh extraction: all, every tenth, or none.
+enum class Checks { every, some, none };
+
 struct OutputSpec {
   bool obj = true, ply = true, vtp = true;  ///< Formats of surface/ ...
   bool particles = true;                    ///< Whether particles/ is written.
   bool video = true;                        ///< surface.mp4 and particles.mp4, where ffmpeg is installed.
+  Checks checks = Checks::some;             ///< Of the surface against a fresh extraction, for frames.csv.
   int checkpoint_interval = 10;             ///< Frames from one saved state to the next; 0: none is saved.
 };
 

@@ -22,6 +22,7 @@
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/remeshing/remesh.h"
 #include "tracking/repair/change_topology.h"
+#include "tracking/repair/repair_limits.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -32,8 +33,7 @@ constexpr int kRemeshingPasses = 3;
 constexpr double kTornAtRest =
     3;                      // times its length: the ends of an edge that were farther apart at rest are of two bodies
 constexpr int kFewIn = 50;  // one operation in so many vertices is few: another pass is not worth it
-constexpr double kDisagreementDepth = 0.3;  // of an edge length
-constexpr double kFarReach = 2;             // of old material where particles know none, in effective radii
+constexpr double kFarReach = 2;  // of old material where particles know none, in effective radii
 
 void require(bool condition, const std::string& name, double value, const std::string& wanted) {
   if (!condition) {
@@ -192,6 +192,7 @@ class TrackerImpl {
     return field_ ? field_confidence(*field_, mesh_.positions) : std::vector<Confidence>(mesh_.positions.size());
   }
   const SurfaceMesh& mesh() const { return mesh_; }
+  std::shared_ptr<const ImplicitField> field() const { return field_; }
   const TrackerReport& report() const { return report_; }
   const TrackerSettings& settings() const { return settings_; }
 
@@ -232,7 +233,7 @@ class TrackerImpl {
   MaterialSettings material_settings() const {
     MaterialSettings material;
     material.reach = settings_.edge_length;
-    material.same_vertex = settings_.edge_length / 3;
+    material.same_vertex = kRepairLimits.same_id * settings_.edge_length;
     material.far_reach = kFarReach * scale_.length;
     return material;
   }
@@ -415,7 +416,7 @@ class TrackerImpl {
     const std::vector<std::uint64_t> old_ids = mesh_.ids;
     TopologySettings limits;
     limits.edge_length = settings_.edge_length;
-    limits.depth = kDisagreementDepth * settings_.edge_length;
+    limits.depth = kRepairLimits.wrong_side_depth * settings_.edge_length;
     limits.local = settings_.topology;
     limits.smallest_part = settings_.smallest_part;
     limits.small_parts = settings_.small_parts;
@@ -470,6 +471,7 @@ void Tracker::begin_layer() { impl_->begin_layer(); }
 void Tracker::drop_layer(std::size_t layer) { impl_->drop_layer(layer); }
 std::vector<Confidence> Tracker::confidence() const { return impl_->confidence(); }
 const SurfaceMesh& Tracker::mesh() const { return impl_->mesh(); }
+std::shared_ptr<const ImplicitField> Tracker::field() const { return impl_->field(); }
 const TrackerReport& Tracker::report() const { return impl_->report(); }
 const TrackerSettings& Tracker::settings() const { return impl_->settings(); }
 const TrackerState& Tracker::state() const { return impl_->state(); }

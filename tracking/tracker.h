@@ -127,6 +127,8 @@ class Tracker {
   void drop_layer(std::size_t layer);
 
   const SurfaceMesh& mesh() const;
+  /// The field that the mesh is a surface of, now; null where there are no particles.
+  std::shared_ptr<const ImplicitField> field() const;
   /// How well the field alone determines the tangential velocity of each vertex, now. Worked out anew by each call.
   std::vector<Confidence> confidence() const;
   const TrackerReport& report() const;

@@ -17,6 +17,10 @@ void add_output_keys(KeyTable& table, OutputSpec& output) {
   table.boolean("output.vtp", output.vtp, "Write the surface as VTP.");
   table.boolean("output.particles", output.particles, "Write the particles.");
   table.boolean("output.video", output.video, "Make videos, where ffmpeg is installed.");
+  table.choice<Checks>(
+      "output.checks", output.checks, {{"every", Checks::every}, {"some", Checks::some}, {"none", Checks::none}},
+      "Which frames are compared with a fresh extraction, for frames.csv: all, every tenth from frame 0 on, none. A "
+      "comparison takes about half as long as tracking the frame.");
   table.integer("output.checkpoint_interval", output.checkpoint_interval, 0, 1000000, "frames",
                 "How often the state is saved, for --resume; also when the run is interrupted. 0: never.");
 }

@@ -77,7 +77,7 @@ const char* const full_scene = R"({
   "render": {"enabled": false, "camera": {"position": [1, 2, 3], "look_at": [0, 0.5, 0], "up": [0, 0, 1],
     "vertical_fov": 40}, "width": 320, "height": 180, "samples": 2, "style": "solid", "ground": false,
     "ground_height": -1, "ground_color": [0.3, 0.2, 0.1], "light_direction": [1, 2, 3], "light_size": 5, "exposure": 1.5},
-  "output": {"obj": false, "ply": false, "vtp": false, "particles": false, "video": false, "checkpoint_interval": 3}
+  "output": {"obj": false, "ply": false, "vtp": false, "particles": false, "video": false, "checks": "every", "checkpoint_interval": 3}
 })";
 
 TEST(SceneFile, WrittenScenesReadBackTheSame) {

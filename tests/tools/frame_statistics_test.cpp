@@ -55,7 +55,9 @@ struct BallOfParticles {
   }
   FrameRow described(const tracking::SurfaceMesh& mesh) const {
     FrameRow row;
-    describe_surface(mesh, particles, settings, row);
+    std::optional<tracking::MetaballField> field;
+    if (!particles.positions.empty()) field.emplace(tracking::field_of(particles, settings.field));
+    describe_surface(mesh, field ? &*field : nullptr, particles, settings, true, row);
     return row;
   }
   tracking::Particles particles;

@@ -56,7 +56,7 @@ class AnalyticField final : public ImplicitField {
     return sum;
   }
   FieldScale scale() const override { return scale_; }
-  SparseGrid on_grid(double spacing) const override {
+  std::shared_ptr<const SparseGrid> on_grid(double spacing) const override {
     Box box{Vec3::Constant(1e9), Vec3::Constant(-1e9)};
     for (const Blob& blob : blobs_) {
       // Beyond this distance no blob reaches its share of the threshold.
@@ -67,7 +67,8 @@ class AnalyticField final : public ImplicitField {
       box.max = box.max.cwiseMax(blob.center + reach);
     }
     if (blobs_.empty()) box = {};
-    return SparseGrid::of_function([this](const Vec3& x) { return value(x); }, box, -threshold_, spacing);
+    return std::make_shared<const SparseGrid>(
+        SparseGrid::of_function([this](const Vec3& x) { return value(x); }, box, -threshold_, spacing));
   }
 
  private:

@@ -122,7 +122,8 @@ TEST(FieldWalls, NeighborhoodsAndGridSeeTheSame) {
     field.value(points[i], expected);
     EXPECT_EQ(gradient, expected);
   }
-  const SparseGrid grid = field.on_grid(0.75);
+  const std::shared_ptr<const SparseGrid> kept = field.on_grid(0.75);
+  const SparseGrid& grid = *kept;
   int nodes = 0;
   for (const SparseGrid::Block& block : grid.blocks()) {
     for (int n = 0; n < SparseGrid::kSide; ++n) {

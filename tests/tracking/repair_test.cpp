@@ -18,6 +18,7 @@
 #include "tracking/repair/disagreement.h"
 #include "tracking/repair/grid_crossings.h"
 #include "tracking/repair/patch_mesh.h"
+#include "tracking/repair/repair_limits.h"
 #include "tracking/repair/replace_region.h"
 
 namespace flowskin::tracking::repair_test {
@@ -413,6 +414,35 @@ TEST(ChangeTopology, MendsATriangleWithoutArea) {
 
 TEST(ChangeTopology, MendsAVertexThatWasLost) {
   expect_mended([](SurfaceMesh& mesh) { mesh.positions[3] *= 4; }, 0.7);
+}
+
+// The regions that are replaced where the triangles in one place of a ball are squeezed to a seventh of their width,
+// with another ball far away.
+int regions_of_squeezed(double radius_elsewhere) {
+  std::vector<Vec3> points = ball_of_particles(4.2);
+  for (const Vec3& x : ball_of_particles(radius_elsewhere, Vec3(60, 0, 0))) points.push_back(x);
+  const Particles particles = particles_at(points);
+  const MetaballField field(points, {}, kField);
+  SurfaceMesh mesh = fresh_surface(field, particles).mesh;
+  const Vec3 middle(0, 0, 4.7);
+  for (Vec3& x : mesh.positions) {
+    if ((x - middle).norm() < 1.5 * kEdge) x.x() /= 7;
+  }
+  Projection projection = project_to_surface(field, default_projection(kField.scale()), mesh.positions);
+  const std::vector<double> angles = smallest_angles(mesh.positions, mesh.triangles);
+  const auto narrow =
+      std::count_if(angles.begin(), angles.end(), [](double a) { return a < kRepairLimits.narrow_angle; });
+  EXPECT_GE(narrow, 3);
+  EXPECT_LE(narrow, 16);
+  const TopologyReport report = change_topology(field, particles, settings(), mesh, projection);
+  EXPECT_EQ(report.stubborn, 0);
+  return report.regions;
+}
+
+TEST(ChangeTopology, MendsNarrowTrianglesWhateverIsElsewhere) {
+  const int alone = regions_of_squeezed(3);
+  EXPECT_GT(alone, 0);
+  EXPECT_EQ(regions_of_squeezed(20), alone);
 }
 
 TEST(ChangeTopology, ReplacesAMeshThatIsInsideOutOrMissing) {

@@ -47,7 +47,7 @@ FrameLoop::FrameLoop(const RunOptions& options, RunStart start, const RunDirecto
       scene_(std::move(start.scene)),
       source_(std::move(start.source)),
       output_(directory, scene_, start.texture, box_of_most(*source_), clock_.stages),
-      table_(directory.frames_csv(), WallSolids(scene_), clock_.stages) {
+      table_(directory.frames_csv(), WallSolids(scene_), scene_.output.checks, clock_.stages) {
   clock_.add_earlier("source", start.seconds);
   if (resumed) log_.detail("resumed");
   log_.detail(version_text());

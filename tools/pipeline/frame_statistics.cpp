@@ -59,14 +59,15 @@ void FrameStatistics::add(const tracking::TrackerReport& report) {
 }
 
 FrameRow FrameStatistics::finish_frame(int frame, const scenes::ParticleSource& source,
-                                       const tracking::Tracker* tracker, const SurfaceFrame* surface) {
+                                       const tracking::Tracker* tracker, const SurfaceFrame* surface, bool is_checked) {
   FrameRow row;
   row.frame = frame;
   row.time = source.state().time;
   describe_source(source, row);
   if (tracker && surface) {
     row.max_distance = tracker->report().max_distance;
-    describe_surface(surface->mesh, to_particles(source.state()), tracker->settings(), row);
+    describe_surface(surface->mesh, tracker->field().get(), tracker->state().particles, tracker->settings(), is_checked,
+                     row);
     std::vector<std::uint64_t> ids = surface->mesh.ids;
     std::sort(ids.begin(), ids.end());
     row.kept_ids = count_common(ids, previous_ids_);

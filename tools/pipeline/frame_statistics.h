@@ -18,8 +18,9 @@ class FrameStatistics {
   /// Adds what happened in one tracker step.
   void add(const tracking::TrackerReport& report);
   /// The row of the frame that ends now. `tracker` and `surface` are null where no surface is tracked.
+  /// @param is_checked whether the surface is compared with a fresh extraction
   FrameRow finish_frame(int frame, const scenes::ParticleSource& source, const tracking::Tracker* tracker,
-                        const SurfaceFrame* surface);
+                        const SurfaceFrame* surface, bool is_checked);
 
   /// Why the whole mesh was replaced last.
   const std::string& last_reason() const { return last_reason_; }

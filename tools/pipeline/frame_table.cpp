@@ -2,6 +2,16 @@
 
 namespace flowskin::tools {
 
+namespace {
+
+constexpr int kSomeChecks = 10;  // frames from one check to the next
+
+}
+
+bool FrameTable::is_checked(int frame) const {
+  return checks_ == scenes::Checks::every || (checks_ == scenes::Checks::some && frame % kSomeChecks == 0);
+}
+
 double FrameTable::since_last_row(const char* stage) {
   const double total = clock_.seconds(stage);
   return total - std::exchange(booked_[stage], total);
@@ -10,7 +20,8 @@ double FrameTable::since_last_row(const char* stage) {
 const FrameRow& FrameTable::add_frame(int frame, const scenes::ParticleSource& source, std::size_t particles,
                                       const TrackedSurface* surface, const SurfaceFrame* shown) {
   FrameRow row = clock_.time("statistics", [&] {
-    FrameRow measured = statistics_.finish_frame(frame, source, surface ? &surface->tracker() : nullptr, shown);
+    FrameRow measured =
+        statistics_.finish_frame(frame, source, surface ? &surface->tracker() : nullptr, shown, is_checked(frame));
     if (shown) measured.volume_outside_walls = walls_.volume_outside(shown->mesh, measured.time);
     return measured;
   });

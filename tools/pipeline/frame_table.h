@@ -20,9 +20,10 @@ namespace flowskin::tools {
 
 class FrameTable {
  public:
-  /// @param walls of the scene @param clock whose times of each frame go into its row
-  FrameTable(std::filesystem::path file, WallSolids walls, StageClock& clock)
-      : file_(std::move(file)), walls_(std::move(walls)), clock_(clock) {}
+  /// @param walls of the scene @param checks which frames are compared with a fresh extraction @param clock whose times
+  /// of each frame go into its row
+  FrameTable(std::filesystem::path file, WallSolids walls, scenes::Checks checks, StageClock& clock)
+      : file_(std::move(file)), walls_(std::move(walls)), checks_(checks), clock_(clock) {}
 
   /// Adds what happened in one tracker step.
   void add_step(const tracking::TrackerReport& report) { statistics_.add(report); }
@@ -44,9 +45,11 @@ class FrameTable {
 
  private:
   double since_last_row(const char* stage);
+  bool is_checked(int frame) const;
 
   std::filesystem::path file_;
   WallSolids walls_;
+  scenes::Checks checks_;
   StageClock& clock_;
   FrameStatistics statistics_;
   std::vector<FrameRow> rows_;

@@ -10,10 +10,13 @@
 
 namespace flowskin::tools {
 
-/// Fills in the columns that are functions of the mesh and the particles beneath it; among them a comparison with a
-/// fresh raw extraction of the same field at the same edge length.
-void describe_surface(const tracking::SurfaceMesh& mesh, const tracking::Particles& particles,
-                      const tracking::TrackerSettings& settings, FrameRow& row);
+/// Fills in the columns that are functions of the mesh and the particles beneath it.
+/// @param field of these particles; null where there are none
+/// @param is_checked whether the mesh is compared with a fresh raw extraction of the field at the same edge length, and
+/// its texture with the particles' material: as much work as half of a step of the tracker
+void describe_surface(const tracking::SurfaceMesh& mesh, const tracking::ImplicitField* field,
+                      const tracking::Particles& particles, const tracking::TrackerSettings& settings, bool is_checked,
+                      FrameRow& row);
 
 /// The columns stretch_median and stretch_p99 of frames.csv and of compare.csv.
 template <class Row>

@@ -11,7 +11,6 @@ namespace flowskin::tools {
 struct FrameRow {
 #define COLUMN(type, name, ...) type name{__VA_ARGS__};
 #include "tools/report/frame_columns.def"
-#undef COLUMN
 
   template <class Archive>
   void visit(Archive& archive);
@@ -22,7 +21,19 @@ template <class Row, class Visit>
 void for_each_frame_column(Row& row, Visit visit) {
 #define COLUMN(type, name, ...) visit(#name, row.name);
 #include "tools/report/frame_columns.def"
-#undef COLUMN
+}
+
+/// The same, but columns of the comparison that was not made are empty.
+template <class Visit>
+void for_each_printed_column(const FrameRow& row, Visit visit) {
+#define COLUMN(type, name, ...) visit(#name, row.name);
+#define CHECKED_COLUMN(type, name, ...) \
+  if (row.checked) {                    \
+    visit(#name, row.name);             \
+  } else {                              \
+    visit(#name, "");                   \
+  }
+#include "tools/report/frame_columns.def"
 }
 
 template <class Archive>

@@ -47,9 +47,16 @@ std::string worst_frames(const std::vector<FrameRow>& rows, double edge_length) 
   const auto low = [&](auto first, const char* format, const auto& value) {
     tell(first, format, value, [&](const FrameRow& row) { return -value(row); });
   };
-  high("{} self-intersections", [](const FrameRow& row) { return row.self_intersections; });
-  high("Hausdorff {:.2f} edge lengths", [&](const FrameRow& row) { return row.hausdorff / edge_length; });
-  tell(all, "volume {:+.2f} %", volume_error, [](const FrameRow& row) { return std::abs(volume_error(row)); });
+  if (std::any_of(all, rows.end(), [](const FrameRow& row) { return row.checked != 0; })) {
+    const auto high_of_checked = [&](const char* format, const auto& value, const auto& badness) {
+      tell(all, format, value, [&](const FrameRow& row) { return row.checked ? double(badness(row)) : -1.0; });
+    };
+    const auto crossings = [](const FrameRow& row) { return row.self_intersections; };
+    const auto apart = [&](const FrameRow& row) { return row.hausdorff / edge_length; };
+    high_of_checked("{} self-intersections", crossings, crossings);
+    high_of_checked("Hausdorff {:.2f} edge lengths", apart, apart);
+    high_of_checked("volume {:+.2f} %", volume_error, [](const FrameRow& row) { return std::abs(volume_error(row)); });
+  }
   high("|f|/|grad f| {:.1e} m", [](const FrameRow& row) { return row.max_distance; });
   low(all, "good angles {:.2f} %", [](const FrameRow& row) { return 100 * row.good_angles; });
   low(all, "good edges {:.2f} %", [](const FrameRow& row) { return 100 * row.good_edges; });
@@ -57,8 +64,11 @@ std::string worst_frames(const std::vector<FrameRow>& rows, double edge_length) 
   if (rows.size() > 1) low(all + 1, "{:.1f} % of the ids of the frame before kept", kept);
   if (text.empty()) return text;
   text += first_ids_at_the_end(rows);
-  const auto differs = std::count_if(rows.begin(), rows.end(), [](const FrameRow& row) { return !row.same_topology; });
-  return text + fmt::format("; topology differs in {} of {} frames", differs, rows.size());
+  const auto checked = std::count_if(all, rows.end(), [](const FrameRow& row) { return row.checked != 0; });
+  const auto differs =
+      std::count_if(all, rows.end(), [](const FrameRow& row) { return row.checked && !row.same_topology; });
+  text += fmt::format("; topology differs in {} of {} frames", differs, checked);
+  return checked == std::ssize(rows) ? text : text + fmt::format(" that were checked, of {}", rows.size());
 }
 
 }  // namespace flowskin::tools

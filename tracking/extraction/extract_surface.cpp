@@ -92,8 +92,8 @@ void append(const SurfaceGeometry& part, SurfaceGeometry& whole) {
 }  // namespace
 
 SurfaceGeometry extract_raw_surface(const ImplicitField& field, double edge_length) {
-  const SparseGrid grid = field.on_grid(edge_length);
-  return march(grid, [&](const Vec3& x) { return field.value(x); });
+  const std::shared_ptr<const SparseGrid> grid = field.on_grid(edge_length);
+  return march(*grid, [&](const Vec3& x) { return field.value(x); });
 }
 
 SurfaceGeometry improve_surface(const ImplicitField& field, double edge_length, const SurfaceGeometry& surface) {

@@ -32,8 +32,8 @@ class ImplicitField {
   virtual FieldScale scale() const = 0;
 
   /// The field at the nodes of a grid of this spacing (m), kept in all blocks that its surface may cross. What the grid
-  /// does not keep lies outside.
-  virtual SparseGrid on_grid(double spacing) const = 0;
+  /// does not keep lies outside. Asked for again with the same spacing it may be the same grid.
+  virtual std::shared_ptr<const SparseGrid> on_grid(double spacing) const = 0;
 
   /// The field around many points, of which neighbours follow each other. One that finds out once what many places have
   /// in common (which particles, which voxels matter) is quicker than the field itself; by default it is just that.

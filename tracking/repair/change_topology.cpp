@@ -11,17 +11,12 @@
 #include "tracking/mesh/keep_vertices.h"
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/repair/places_to_mend.h"
+#include "tracking/repair/repair_limits.h"
 #include "tracking/repair/replace_region.h"
 #include "tracking/repair/small_parts.h"
 
 namespace flowskin::tracking {
 namespace {
-
-constexpr int kRepairRounds = 14;
-constexpr double kDust = 0.05;      // volume of a component that is not worth its triangles, in cells
-constexpr double kSmall = 8;        // volume of a part that is compared by its true size, in cells
-constexpr int kAttempts = 30;       // to fit a region in, until it has grown to where it does
-constexpr int kAllAroundEvery = 6;  // attempts the region grows as a whole
 
 // Of a closed surface, without the components that enclose less than `least` (m^3).
 SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, double least,
@@ -43,13 +38,14 @@ SurfaceCounts counts_of(const std::vector<Vec3>& positions, const std::vector<Tr
     return sum;
   };
   const double cell = std::pow(edge_length, 3);
-  return {count(std::max(least, cell / 2)), count(std::max(least, cell))};
+  const auto& [half, whole] = kRepairLimits.counted_parts;
+  return {count(std::max(least, half * cell)), count(std::max(least, whole * cell))};
 }
 
 // Interpolation along the edges of the grid makes parts hardly larger than a cell much too small to be compared.
 void put_small_parts_on_roots(const FieldGrid& fresh, double edge_length, SurfaceGeometry& surface) {
   const MeshComponents parts = mesh_components(surface.positions, surface.triangles);
-  const double small = kSmall * std::pow(edge_length, 3);
+  const double small = kRepairLimits.compared_on_roots * std::pow(edge_length, 3);
   const auto value = [&](const Vec3& x) { return fresh.field.value(x); };
   for (std::size_t v = 0; v < surface.positions.size(); ++v) {
     if (std::abs(parts.volumes[parts.of_vertex[v]]) < small) put_on_root(fresh.grid, value, surface.positions[v]);
@@ -58,7 +54,7 @@ void put_small_parts_on_roots(const FieldGrid& fresh, double edge_length, Surfac
 
 // Components that enclose less are taken out in the end (m^3).
 double least_volume(const TopologySettings& settings) {
-  const double dust = kDust * std::pow(settings.edge_length, 3);
+  const double dust = kRepairLimits.dust * std::pow(settings.edge_length, 3);
   return settings.small_parts == SmallParts::drop ? std::max(dust, settings.smallest_part) : dust;
 }
 
@@ -126,7 +122,7 @@ class MeshUnderRepair {
     std::optional<MeshPatch> best;
     std::size_t fewest = 0;
     Misfit misfit;
-    for (int attempt = 1; attempt <= kAttempts; ++attempt) {
+    for (int attempt = 1; attempt <= kRepairLimits.attempts; ++attempt) {
       auto patch = replace_region(fresh_, cells, mend_, misfit);
       if (patch && misfit.cells.empty()) return patch;
       why = misfit.why;
@@ -138,8 +134,9 @@ class MeshUnderRepair {
       // Deep within the region more cells do not help.
       if (patch && !bad.empty() && cells.contains(bad.dilated(2))) break;
       const CellSet wider = cells.united(bad.dilated(1));
-      const bool all_around = wider.cells().size() == cells.cells().size() || attempt % kAllAroundEvery == 0;
-      cells = all_around ? wider.united(cells.dilated(1 + attempt / (2 * kAllAroundEvery))) : wider;
+      const bool all_around =
+          wider.cells().size() == cells.cells().size() || attempt % kRepairLimits.all_around_every == 0;
+      cells = all_around ? wider.united(cells.dilated(1 + attempt / (2 * kRepairLimits.all_around_every))) : wider;
     }
     return best;
   }
@@ -287,7 +284,8 @@ void round_small_parts(const TopologySettings& settings, SurfaceMesh& mesh, Topo
 
 TopologyReport change_topology(const ImplicitField& field, const Particles& particles, const TopologySettings& settings,
                                SurfaceMesh& mesh, Projection& projection) {
-  const SparseGrid grid = field.on_grid(settings.edge_length);
+  const std::shared_ptr<const SparseGrid> kept = field.on_grid(settings.edge_length);
+  const SparseGrid& grid = *kept;
   const FieldGrid fresh{field, grid};
   SurfaceGeometry expected = march(grid);
   put_small_parts_on_roots(fresh, settings.edge_length, expected);
@@ -295,7 +293,7 @@ TopologyReport change_topology(const ImplicitField& field, const Particles& part
   TopologyReport report;
   report.expected = counts_of(expected.positions, expected.triangles, least, edge_length);
   PlacesToMend to_mend(fresh, expected, settings.depth);
-  for (int round = 0; round < kRepairRounds; ++round) {
+  for (int round = 0; round < kRepairLimits.rounds; ++round) {
     std::vector<CellSet> regions = to_mend.find(mesh, projection);
     if (regions.empty()) {
       report.counts = counts_of(mesh.positions, mesh.triangles, least, edge_length);

@@ -14,17 +14,12 @@
 #include "tracking/mesh/mesh_measures.h"
 #include "tracking/mesh/point_tree.h"
 #include "tracking/repair/patch_crossings.h"
+#include "tracking/repair/repair_limits.h"
 
 namespace flowskin::tracking {
 namespace {
 
 using namespace improvement;
-
-constexpr double kSameVertex = 0.5;              // edge lengths between an old vertex and the new one in its place
-constexpr double kAsFresh = 0.4;                 // edge lengths between it and the fresh surface
-constexpr double kSameSidePatch = 0.7;           // cosine between their normals
-constexpr double kUprightTriangle = 0.5;         // cosine of the largest turn of a triangle
-constexpr double kLeastAngle = 20 * M_PI / 180;  // of a triangle then
 
 // The patch and the triangles around it, with numbers of their own: old vertices first, then the new ones.
 class LocalMesh {
@@ -163,12 +158,12 @@ bool may_move(const LocalMesh& mesh, const MeshAdjacency& topology, int vertex, 
     for (int i = 0; i < 3; ++i) after[i] = triangle[i] == vertex ? x : mesh.positions()[triangle[i]];
     const Vec3 before = doubled_area_vector(mesh.positions(), triangle);
     const Vec3 area = (after[1] - after[0]).cross(after[2] - after[0]);
-    if (!(area.dot(before) > kUprightTriangle * area.norm() * before.norm())) return false;
+    if (!(area.dot(before) > kRepairLimits.same_vertex_turn * area.norm() * before.norm())) return false;
     for (int i = 0; i < 3; ++i) {
       const Vec3 &a = after[i], &b = after[(i + 1) % 3], &c = after[(i + 2) % 3];
       const double length = (b - a).norm();
       if (length < kShortEdge * edge_length || length > kLongEdge * edge_length) return false;
-      if (angle_at(a, b, c) < kLeastAngle) return false;
+      if (angle_at(a, b, c) < kRepairLimits.same_vertex_angle) return false;
     }
   }
   return true;
@@ -184,7 +179,7 @@ void keep_old_vertices(const FieldGrid& fresh, const MeshToMend& whole, const Me
   const ClosestPointTree fresh_surface(raw.positions, raw.triangles);
   std::erase_if(dropped, [&](int vertex) {
     const Vec3& x = whole.positions[vertex];
-    return !fresh_surface.is_near(x, kAsFresh * edge_length) ||
+    return !fresh_surface.is_near(x, kRepairLimits.same_vertex_off_surface * edge_length) ||
            !(surface_distance(fresh.field, x).distance <= tolerance);
   });
   const int first = mesh.old_count(), count = static_cast<int>(mesh.positions().size());
@@ -197,7 +192,8 @@ void keep_old_vertices(const FieldGrid& fresh, const MeshToMend& whole, const Me
   const std::vector<Vec3> places(mesh.positions().begin() + first, mesh.positions().end());
   const std::vector<Vec3> normals(mesh.normals().begin() + first, mesh.normals().end());
   const std::vector<int> old_of =
-      paired_points({old_places, old_normals}, {places, normals}, kSameVertex * edge_length, kSameSidePatch);
+      paired_points({old_places, old_normals}, {places, normals}, kRepairLimits.same_vertex * edge_length,
+                    kRepairLimits.same_vertex_normals);
   const MeshAdjacency topology = mesh.topology();
   for (int v = first; v < count; ++v) {
     if (!mesh.is_free(v) || old_of[v - first] < 0) continue;

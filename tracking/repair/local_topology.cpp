@@ -5,13 +5,10 @@
 #include <numbers>
 
 #include "tracking/mesh/editable_mesh.h"
+#include "tracking/repair/repair_limits.h"
 
 namespace flowskin::tracking {
-namespace {
-
-constexpr int kWindow = 2;  // cells to all sides
-
-}  // namespace
+namespace {}  // namespace
 
 LocalTopology::LocalTopology(const SparseGrid& grid, const std::vector<Vec3>& positions,
                              const std::vector<Triangle>& triangles, const SurfaceGeometry& fresh) {
@@ -50,13 +47,13 @@ std::vector<CellSet::Cell> LocalTopology::differing(const CellSet& where, double
   for (std::ptrdiff_t i = 0; i < std::ssize(differs); ++i) {
     const CellSet::Cell& center = where.cells()[i];
     double sum = 0;
-    for (int dx = -kWindow; dx <= kWindow; ++dx) {
-      for (int dy = -kWindow; dy <= kWindow; ++dy) {
-        const CellSet::Cell first = {center[0] + dx, center[1] + dy, center[2] - kWindow};
+    for (int dx = -kRepairLimits.hidden_window; dx <= kRepairLimits.hidden_window; ++dx) {
+      for (int dy = -kRepairLimits.hidden_window; dy <= kRepairLimits.hidden_window; ++dy) {
+        const CellSet::Cell first = {center[0] + dx, center[1] + dy, center[2] - kRepairLimits.hidden_window};
         auto next =
             std::lower_bound(defects_.begin(), defects_.end(), first,
                              [](const Defect& defect, const CellSet::Cell& cell) { return defect.cell < cell; });
-        const CellSet::Cell last = {first[0], first[1], center[2] + kWindow};
+        const CellSet::Cell last = {first[0], first[1], center[2] + kRepairLimits.hidden_window};
         for (; next != defects_.end() && next->cell <= last; ++next) sum += next->sum;
       }
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tracking/mesh/mesh_measures.h"
+#include "tracking/repair/repair_limits.h"
 
 namespace flowskin::tracking {
 namespace {
@@ -17,7 +18,7 @@ Box box_of(const CellSet& cells) {
 }
 
 bool is_narrow(const MeshToMend& mesh, int t) {
-  return smallest_angle(mesh.positions, mesh.triangles[t]) < kNarrowAngle;
+  return smallest_angle(mesh.positions, mesh.triangles[t]) < kRepairLimits.narrow_angle;
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // A hole in a mesh, and what is around it.
 #pragma once
 
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -9,8 +8,6 @@
 #include "tracking/repair/replace_region.h"
 
 namespace flowskin::tracking {
-
-inline constexpr double kNarrowAngle = 10 * std::numbers::pi / 180;  ///< Of narrow triangles (rad).
 
 using Side = std::pair<int, int>;  ///< Of a triangle, from one corner to the next.
 

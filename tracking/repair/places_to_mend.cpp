@@ -17,14 +17,6 @@
 namespace flowskin::tracking {
 namespace {
 
-constexpr double kDisplaced = 0.35;  // cells, along the edges of the grid: to be looked at
-constexpr double kFar = 0.25;        // cells, from the surface that the grid's values give: to be looked at
-constexpr double kFarApart = 0.47;   // cells; the two surfaces are not to be so far from each other
-constexpr double kStrayReaches[] = {0.5, 0.3, 0.2};    // cells; a thin neck is near its stumps
-constexpr double kHiddenShares[] = {0.75, 0.75, 0.4};  // of the trace that a hole leaves
-constexpr double kManyNarrow = 0.0008;                 // share of the triangles
-constexpr int kFocus = 3;  // layers of cells around a replaced region that are looked at again
-
 std::vector<Triangle> chosen(const std::vector<Triangle>& triangles, const std::vector<int>& numbers) {
   std::vector<Triangle> result(numbers.size());
 #pragma omp parallel for schedule(static)
@@ -60,12 +52,26 @@ std::vector<int> triangles_in(const CellSet* cells, const std::vector<Box>& boxe
   return where_true(boxes.size(), [&](int t) { return !cells || meets(*cells, boxes[t].min, boxes[t].max); });
 }
 
-// Narrow triangles where there are too many of them, as in the crease between bodies that have just met.
-std::vector<int> narrow_triangles(const SurfaceMesh& mesh) {
+// Narrow triangles where they are many among the triangles around them, as in the crease between bodies that have just
+// met. What lies elsewhere has no say in it.
+std::vector<int> crowded_narrow_triangles(const SurfaceMesh& mesh, const std::vector<Box>& boxes) {
   const std::vector<double> angles = smallest_angles(mesh.positions, mesh.triangles);
-  std::vector<int> narrow = where_true(angles.size(), [&](int t) { return angles[t] < kNarrowAngle; });
-  if (static_cast<double>(narrow.size()) < kManyNarrow * static_cast<double>(angles.size())) narrow.clear();
-  return narrow;
+  const std::vector<int> narrow =
+      where_true(angles.size(), [&](int t) { return angles[t] < kRepairLimits.narrow_angle; });
+  if (narrow.empty()) return {};
+  std::vector<CellSet::Cell> cells;
+  for (int t : narrow) add_cells(boxes[t].min, boxes[t].max, cells);
+  std::vector<int> crowded;
+  for (const CellSet& around : CellSet(std::move(cells)).dilated(kRepairLimits.narrow_around).components()) {
+    std::vector<int> within;
+    for (int t : narrow) {
+      if (meets(around, boxes[t].min, boxes[t].max)) within.push_back(t);
+    }
+    const auto count = static_cast<double>(triangles_in(&around, boxes).size());
+    if (static_cast<double>(within.size()) >= kRepairLimits.many_narrow * count)
+      crowded.insert(crowded.end(), within.begin(), within.end());
+  }
+  return crowded;
 }
 
 }  // namespace
@@ -77,7 +83,7 @@ std::vector<CellSet> PlacesToMend::find(const SurfaceMesh& mesh, const Projectio
   std::vector<CellSet::Cell> cells = disagreements(mesh, triangles);
   std::vector<int> spoilt = spoilt_triangles(mesh, projection, looked_at, triangles, focus_.has_value());
   if (!focus_) {
-    const std::vector<int> narrow = narrow_triangles(mesh);
+    const std::vector<int> narrow = crowded_narrow_triangles(mesh, boxes);
     spoilt.insert(spoilt.end(), narrow.begin(), narrow.end());
   }
   for (int t : spoilt) add_cells(boxes[t].min, boxes[t].max, cells);
@@ -88,11 +94,12 @@ std::vector<CellSet> PlacesToMend::find(const SurfaceMesh& mesh, const Projectio
 std::vector<CellSet::Cell> PlacesToMend::disagreements(const SurfaceMesh& mesh,
                                                        const std::vector<Triangle>& looked_at) const {
   const GridCrossings crossings = grid_crossings(fresh_.grid, mesh.positions, looked_at);
-  std::vector<CellSet::Cell> cells, doubtful = displaced_cells(fresh_.field, fresh_.grid, kDisplaced, crossings);
+  std::vector<CellSet::Cell> cells,
+      doubtful = displaced_cells(fresh_.field, fresh_.grid, kRepairLimits.doubtful_crossing, crossings);
   const auto doubt = [&](const std::vector<CellSet::Cell>& more) {
     doubtful.insert(doubtful.end(), more.begin(), more.end());
   };
-  const double far = kFar * fresh_.grid.spacing();
+  const double far = kRepairLimits.doubtful_distance * fresh_.grid.spacing();
   // Fresh surface agrees with the signs of the grid.
   if (!focus_) {
     cells = disagreeing_cells(fresh_.field, fresh_.grid, depth_, crossings, &doubtful);
@@ -105,7 +112,7 @@ std::vector<CellSet::Cell> PlacesToMend::disagreements(const SurfaceMesh& mesh,
 
 // Of these places, those where only one of the surfaces has a part, or it lies elsewhere.
 std::vector<CellSet::Cell> PlacesToMend::strays_in(const CellSet& places, const SurfaceMesh& mesh) const {
-  const double reach = kFarApart * fresh_.grid.spacing();
+  const double reach = kRepairLimits.too_far_apart * fresh_.grid.spacing();
   const auto value = [&](const Vec3& x) { return fresh_.field.value(x); };
   return stray_cells(fresh_.grid, reach, mesh.positions, mesh.triangles, places, value);
 }
@@ -127,32 +134,33 @@ CellSet PlacesToMend::widened_where_named_again(const CellSet& named) {
 }
 
 std::vector<CellSet> PlacesToMend::find_strays(const SurfaceMesh& mesh) {
-  if (stray_round_ == std::ssize(kStrayReaches)) return {};
+  if (stray_round_ == std::ssize(kRepairLimits.stray_distances)) return {};
   const double spacing = fresh_.grid.spacing();
-  const Strays strays(fresh_.grid, kStrayReaches[stray_round_] * spacing, {mesh.positions, mesh.triangles}, expected_);
-  while (stray_round_ < std::ssize(kStrayReaches)) {
-    const CellSet cells(strays.farther_than(kStrayReaches[stray_round_++] * spacing));
+  const Strays strays(fresh_.grid, kRepairLimits.stray_distances[stray_round_] * spacing,
+                      {mesh.positions, mesh.triangles}, expected_);
+  while (stray_round_ < std::ssize(kRepairLimits.stray_distances)) {
+    const CellSet cells(strays.farther_than(kRepairLimits.stray_distances[stray_round_++] * spacing));
     if (!cells.empty()) return regions(cells.dilated(1));
   }
   return {};
 }
 
 std::vector<CellSet> PlacesToMend::find_hidden(const SurfaceMesh& mesh) {
-  if (hidden_round_ == std::ssize(kHiddenShares)) return {};
+  if (hidden_round_ == std::ssize(kRepairLimits.hidden_angles)) return {};
   const GridCrossings crossings = grid_crossings(fresh_.grid, mesh.positions, mesh.triangles);
   std::vector<CellSet::Cell> hidden_or_shallow = hidden_cells(crossings);
   for (const auto& cell : disagreeing_cells(fresh_.field, fresh_.grid, 0, crossings)) hidden_or_shallow.push_back(cell);
   const CellSet hidden = CellSet(std::move(hidden_or_shallow)).dilated(1);
   const LocalTopology topology(fresh_.grid, mesh.positions, mesh.triangles, expected_);
-  while (hidden_round_ < std::ssize(kHiddenShares)) {
-    const CellSet cells(topology.differing(hidden, kHiddenShares[hidden_round_++]));
+  while (hidden_round_ < std::ssize(kRepairLimits.hidden_angles)) {
+    const CellSet cells(topology.differing(hidden, kRepairLimits.hidden_angles[hidden_round_++]));
     if (!cells.empty()) return regions(cells.dilated(1));
   }
   return {};
 }
 
 std::vector<CellSet> PlacesToMend::regions(const CellSet& places) {
-  focus_ = places.dilated(kFocus);
+  focus_ = places.dilated(kRepairLimits.looked_at_again);
   return places.components();
 }
 

@@ -10,6 +10,7 @@
 #include "tracking/extraction/cell_set.h"
 #include "tracking/extraction/marching_cubes.h"
 #include "tracking/mesh/surface_mesh.h"
+#include "tracking/repair/repair_limits.h"
 #include "tracking/repair/replace_region.h"
 
 namespace flowskin::tracking {
@@ -41,7 +42,7 @@ class PlacesToMend {
   CellSet widened_where_named_again(const CellSet& named);
   std::vector<CellSet> regions(const CellSet& places);
 
-  static constexpr int kTimes = 4;  // that a place may be named in one call
+  static constexpr int kTimes = kRepairLimits.times_marked;
 
   const FieldGrid& fresh_;
   const SurfaceGeometry& expected_;

@@ -14,16 +14,10 @@
 #include "tracking/repair/mesh_hole.h"
 #include "tracking/repair/patch_crossings.h"
 #include "tracking/repair/patch_mesh.h"
+#include "tracking/repair/repair_limits.h"
 
 namespace flowskin::tracking {
 namespace {
-
-constexpr int kMargin = 3;               // layers of cells by which the fresh surface overlaps the rest of the mesh
-constexpr double kReach = 0.75;          // between the two surfaces at the border, in cells
-constexpr double kSameSideRegion = 0.5;  // cosine between normals of one sheet
-constexpr double kNear = 0.4;     // cells that evening may carry the surface away from where marching cubes put it
-constexpr double kMissed = 0.47;  // cells; the fresh surface is not to be farther from the mesh at the border
-constexpr int kFreezings = 5;     // of places where evening does harm
 
 // Fits the border of the hole into the fresh surface and takes what lies within.
 class Filling {
@@ -35,7 +29,8 @@ class Filling {
   bool fit(const MeshToMend& mesh, const std::vector<Side>& border, Misfit& misfit) {
     for (const Side& s : border) {
       if (vertex_in_patch_.count(s.first)) continue;
-      const int vertex = patch_.insert(mesh.positions[s.first], mesh.normals[s.first], kReach * fresh_.grid.spacing());
+      const int vertex = patch_.insert(mesh.positions[s.first], mesh.normals[s.first],
+                                       kRepairLimits.border_reach * fresh_.grid.spacing());
       if (vertex >= 0) {
         vertex_in_patch_[s.first] = vertex;
       } else {
@@ -156,9 +151,10 @@ class Filling {
     const Vec3 normal = doubled_area_vector(patch_.positions(), triangle).normalized();
     for (int k : kept) {
       const Vec3 area = doubled_area_vector(mesh.positions, mesh.triangles[k]);
-      if (!(area.dot(normal) > kSameSideRegion * area.norm())) continue;
+      if (!(area.dot(normal) > kRepairLimits.same_sheet * area.norm())) continue;
       for (int vertex : mesh.triangles[k]) {
-        if ((mesh.positions[vertex] - patch_.positions()[triangle[0]]).norm() < kReach * fresh_.grid.spacing())
+        if ((mesh.positions[vertex] - patch_.positions()[triangle[0]]).norm() <
+            kRepairLimits.border_reach * fresh_.grid.spacing())
           return true;
       }
     }
@@ -203,7 +199,7 @@ std::vector<int> staying(const std::vector<int>& kept, const MeshPatch& patch) {
 // Where an evened patch is not any more where marching cubes put it: vertices of either that are far from the other.
 std::vector<CellSet::Cell> strayed_cells(const FieldGrid& fresh, const MeshToMend& mesh, const MeshPatch& raw,
                                          const MeshPatch& evened) {
-  const double reach = kNear * fresh.grid.spacing();
+  const double reach = kRepairLimits.evened_within * fresh.grid.spacing();
   const SurfaceGeometry before = geometry_of(mesh, raw), after = geometry_of(mesh, evened);
   std::vector<CellSet::Cell> cells;
   const auto compare = [&](const std::vector<Vec3>& born, const SurfaceGeometry& other) {
@@ -221,7 +217,7 @@ std::vector<CellSet::Cell> strayed_cells(const FieldGrid& fresh, const MeshToMen
 // border the patch is made of the mesh's vertices, which may cut off a ridge.
 std::vector<CellSet::Cell> missed_cells(const FieldGrid& fresh, const CellSet& cells, const SurfaceGeometry& expected,
                                         const SurfaceGeometry& found) {
-  const double reach = kMissed * fresh.grid.spacing();
+  const double reach = kRepairLimits.missed * fresh.grid.spacing();
   const ClosestPointTree tree(found.positions, found.triangles);
   std::vector<CellSet::Cell> missed;
   const auto look_at = [&](const Vec3& x) {
@@ -240,7 +236,7 @@ MeshPatch improved(const FieldGrid& fresh, const MeshToMend& mesh, const std::ve
   std::optional<MeshPatch> raw;
   for (const Finish finish : {Finish::evened, Finish::merged}) {
     CellSet frozen;
-    for (int attempt = 0; attempt < kFreezings; ++attempt) {
+    for (int attempt = 0; attempt < kRepairLimits.freezings; ++attempt) {
       MeshPatch evened = patch;
       improve_patch(fresh, mesh, kept, finish, frozen, evened);
       std::vector<CellSet::Cell> bad = strayed_cells(fresh, mesh, patch, evened);
@@ -283,7 +279,7 @@ std::optional<MeshPatch> replace_region(const FieldGrid& fresh, const CellSet& c
   MeshHole hole(cells, mesh);
   if (!hole.smooth_border(mesh, misfit)) return std::nullopt;
   const auto value = [&](const Vec3& x) { return fresh.field.value(x); };
-  SurfaceGeometry surface = march(fresh.grid, cells.dilated(kMargin), value);
+  SurfaceGeometry surface = march(fresh.grid, cells.dilated(kRepairLimits.margin), value);
   const SurfaceGeometry expected = surface;
   Filling filling(fresh, cells, std::move(surface));
   const std::vector<int> kept = hole.kept();

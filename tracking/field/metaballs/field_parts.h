@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "tracking/field/metaballs/group_sums.h"
@@ -112,6 +113,9 @@ struct MetaballField::Impl {
   std::vector<Part> parts;         // those of the particles first, then the walls
   std::size_t particle_parts = 0;  // so many
   FieldWalls walls;
+  // The last grid that was asked for.
+  mutable std::mutex grid_lock;
+  mutable std::shared_ptr<const SparseGrid> grid;
 };
 
 }  // namespace flowskin::tracking

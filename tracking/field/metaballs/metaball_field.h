@@ -56,7 +56,8 @@ class MetaballField final : public ImplicitField, public ParticleField {
   /// The particles' part of the field, in one pass over the neighbours.
   MotionJet motion_jet(const Vec3& x) const override;
   FieldScale scale() const override { return settings().scale(); }
-  SparseGrid on_grid(double spacing) const override;
+  /// Remembers the last grid.
+  std::shared_ptr<const SparseGrid> on_grid(double spacing) const override;
   std::unique_ptr<const LocalFields> near(const std::vector<Vec3>& points, double slack) const override;
   const ParticleField* particles() const override { return this; }
 

@@ -14,8 +14,8 @@ namespace {
 // Adds the kernel of one particle to the nodes of one block. `x` is relative to the block's first node, in spacings.
 void add_kernel(const Vec3& x, double radius_in_spacings, double weight, SparseGrid::Block& block) {
   constexpr int side = SparseGrid::kSide;
-  std::array<int, 3> low{}, high{};
-  for (int axis = 0; axis < 3; ++axis) {
+  std::array<int, 2> low{}, high{};
+  for (int axis = 0; axis < 2; ++axis) {
     low[axis] = std::max(0, static_cast<int>(std::ceil(x[axis] - radius_in_spacings)));
     high[axis] = std::min(side - 1, static_cast<int>(std::floor(x[axis] + radius_in_spacings)));
   }
@@ -25,13 +25,32 @@ void add_kernel(const Vec3& x, double radius_in_spacings, double weight, SparseG
       const double rest = 1 - scale * ((i - x[0]) * (i - x[0]) + (j - x[1]) * (j - x[1]));
       if (rest <= 0) continue;
       double* row = block.values.data() + SparseGrid::node_in_block(i, j, 0);
-      for (int k = low[2]; k <= high[2]; ++k) {
+      // The whole row, without a branch: what is out of reach gets nothing.
+      for (int k = 0; k < side; ++k) {
         const double q = std::max(0.0, rest - scale * (k - x[2]) * (k - x[2]));
         row[k] += weight * q * q * q;
       }
     }
   }
 }
+
+// The blocks that particles name; neighbours name the same ones, so most names are known by a look at one place.
+class BlockKeys {
+ public:
+  void add(std::uint64_t key) {
+    std::uint64_t& seen = seen_[(key * 0x9E3779B97F4A7C15U) >> (64 - kBits)];
+    // No block has the key 0xFF...: it stands for none.
+    if (seen == key) return;
+    seen = key;
+    keys_.push_back(key);
+  }
+  std::vector<std::uint64_t> take() && { return std::move(keys_); }
+
+ private:
+  static constexpr int kBits = 12;
+  std::vector<std::uint64_t> seen_ = std::vector<std::uint64_t>(std::size_t{1} << kBits, ~std::uint64_t{0});
+  std::vector<std::uint64_t> keys_;
+};
 
 Vec3 first_node(const SparseGrid& grid, const SparseGrid::Block& block) {
   constexpr int side = SparseGrid::kSide;
@@ -65,21 +84,13 @@ SparseGrid grid_of_particles(const std::vector<Vec3>& positions, const FieldSett
   }
   std::vector<SparseGrid::NodeBox> boxes(positions.size());
   const Vec3 reach = Vec3::Constant(settings.radius);
-  std::vector<std::uint64_t> keys;
+  BlockKeys keys;
   for (std::size_t p = 0; p < positions.size(); ++p) {
     if (!(share(p) > 0)) continue;
     boxes[p] = SparseGrid::nodes_within(positions[p] - reach, positions[p] + reach, spacing);
-    SparseGrid::for_each_block(boxes[p], 1, [&](const SparseGrid::Index& place) {
-      const std::uint64_t key = SparseGrid::key(place);
-      if (keys.empty() || keys.back() != key) keys.push_back(key);
-    });
-    // Neighbouring particles name the same blocks: thin the list out before it grows large.
-    if ((p & 1023) == 1023) {
-      std::sort(keys.begin(), keys.end());
-      keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    }
+    SparseGrid::for_each_block(boxes[p], 1, [&](const SparseGrid::Index& place) { keys.add(SparseGrid::key(place)); });
   }
-  SparseGrid grid(spacing, -settings.threshold, std::move(keys));
+  SparseGrid grid(spacing, -settings.threshold, std::move(keys).take());
 
   // Particles of each block, ascending, so that sums do not depend on the number of threads.
   std::vector<std::vector<int>> members(grid.blocks().size());
@@ -99,10 +110,12 @@ SparseGrid grid_of_particles(const std::vector<Vec3>& positions, const FieldSett
   return grid;
 }
 
-SparseGrid MetaballField::on_grid(double spacing) const {
+std::shared_ptr<const SparseGrid> MetaballField::on_grid(double spacing) const {
+  const std::lock_guard guard(impl_->grid_lock);
+  if (impl_->grid && impl_->grid->spacing() == spacing) return impl_->grid;
   SparseGrid grid = grid_of_particles(positions(), settings(), spacing, shares());
   for (const auto& wall : walls()) add_wall(*wall, settings(), grid);
-  return grid;
+  return impl_->grid = std::make_shared<const SparseGrid>(std::move(grid));
 }
 
 }  // namespace flowskin::tracking
