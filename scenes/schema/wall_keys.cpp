@@ -22,6 +22,9 @@ void add_boundary_keys(KeyTable& table, BoundarySpec& spec) {
                "0: no slip, 1: free slip; between: the share of wall friction taken away.");
   table.number("adhesion", boundary.adhesion, at_least(0, 2), "",
                "Attraction of the fluid, with surface tension: contact angle 180 degrees at 0, 90 at 0.5, 0 at 1.");
+  table.boolean(
+      "hollow", boundary.hollow,
+      "Whether the inside of a closed mesh may hold fluid; if not, fluid that would begin there is left out.");
   table.vector("surface_velocity", boundary.surface_velocity, "m/s",
                "Velocity of the surface along the wall, as of a conveyor belt.", 1e4);
   table.list("keyframes", boundary.motion.keyframes, add_keyframe_keys, "Motion of the wall; empty: it rests.");

@@ -24,7 +24,10 @@ sph::SimulationSetup setup_of(const Scene& scene) {
   for (const BodySpec& body : scene.bodies) setup.bodies.push_back(body.body);
   for (const EmitterSpec& emitter : scene.emitters) setup.emitters.push_back(emitter.emitter);
   for (const SinkSpec& sink : scene.sinks) setup.sinks.push_back(sink.sink);
-  for (const BoundarySpec& boundary : scene.boundaries) setup.boundaries.push_back(boundary.boundary);
+  for (const BoundarySpec& boundary : scene.boundaries) {
+    setup.boundaries.push_back(boundary.boundary);
+    setup.boundaries.back().name = boundary.mesh.file;
+  }
   return setup;
 }
 

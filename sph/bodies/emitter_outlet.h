@@ -20,6 +20,11 @@ class EmitterOutlet {
   double reach() const { return reach_; }
   /// Particles of a layer, from the centre (m): a lattice stretched such that each stands for area() / count.
   const std::vector<Vec3>& offsets() const { return offsets_; }
+  /// Leaves out the offsets for which `leaves(offset)` holds; the outlet stays as large as it is.
+  template <class Leaves>
+  void leave_out(const Leaves& leaves) {
+    std::erase_if(offsets_, leaves);
+  }
   /// Whether a point's foot on the plane lies in the outlet or nearer than `margin` (m) to it. Meshes: tested in eight
   /// directions.
   bool contains(const Vec3& p, double margin) const;

@@ -36,6 +36,16 @@ class JetEmitter {
   /// @return places that stayed empty
   std::size_t pour(double time, const Surroundings& surroundings, std::vector<Particle>& particles);
 
+  /// Leaves out the places of each layer for which `leaves(place)` holds, a place (m) lying a thousandth of a spacing
+  /// before the outlet, so that an outlet flush with a wall is inside only where it pours into it. The flow through the
+  /// other places stays the same.
+  template <class Leaves>
+  void leave_out(const Leaves& leaves) {
+    const Vec3 from = outlet_.center() + 1e-3 * spacing_ * outlet_.axis();
+    outlet_.leave_out([&](const Vec3& offset) { return leaves(Vec3(from + offset)); });
+  }
+
+  double start() const { return emitter_.start; }  ///< s
   const std::string& fluid() const { return emitter_.fluid; }
   /// Velocity of the fluid in the nozzle (m/s): zero while it is closed.
   Vec3 velocity() const { return closed_ ? Vec3::Zero().eval() : velocity_; }

@@ -3,39 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
+
+#include "sph/geometry/row_crossing.h"
 
 namespace flowskin::sph {
-
-namespace {
-
-struct Crossing {
-  double x;
-  int sign;
-};
-
-// Is (y, z) left of the edge a -> b seen along x? The sum is done from the lower end to the upper one whatever the
-// direction, so two triangles that share an edge always agree and a row never slips between them.
-bool left_of(const Vec3& a, const Vec3& b, double y, double z) {
-  const bool swap = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
-  const Vec3 &p = swap ? b : a, &q = swap ? a : b;
-  const bool left = (q.y() - p.y()) * (z - p.z()) - (q.z() - p.z()) * (y - p.y()) >= 0;
-  return left != swap;
-}
-
-// Where the line along x through (y, z) crosses a triangle.
-std::optional<Crossing> cross_row(const Vec3& a, const Vec3& b, const Vec3& c, double y, double z) {
-  const bool ab = left_of(a, b, y, z), bc = left_of(b, c, y, z), ca = left_of(c, a, y, z);
-  if (ab != bc || bc != ca) return std::nullopt;
-  // Plane of the triangle solved for x.
-  const double ny = (b.z() - a.z()) * (c.x() - a.x()) - (b.x() - a.x()) * (c.z() - a.z());
-  const double nz = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-  const double nx = (b.y() - a.y()) * (c.z() - a.z()) - (b.z() - a.z()) * (c.y() - a.y());
-  if (nx == 0) return std::nullopt;
-  return Crossing{a.x() - (ny * (y - a.y()) + nz * (z - a.z())) / nx, ab ? 1 : -1};
-}
-
-}  // namespace
 
 namespace {
 
@@ -100,7 +71,7 @@ std::vector<Vec3> lattice_points_inside(const TriangleMesh& mesh, double spacing
     }
   }
   const Eigen::Array3i count = ((high - low) / spacing).array().ceil().cast<int>().max(1);
-  std::vector<std::vector<Crossing>> rows(static_cast<std::size_t>(count.y()) * static_cast<std::size_t>(count.z()));
+  std::vector<std::vector<RowCrossing>> rows(static_cast<std::size_t>(count.y()) * static_cast<std::size_t>(count.z()));
   const auto row_y = [&](int j) { return low.y() + (j + 0.5) * spacing; };
   const auto row_z = [&](int k) { return low.z() + (k + 0.5) * spacing; };
   for (const auto& t : mesh.triangles) {
@@ -122,8 +93,8 @@ std::vector<Vec3> lattice_points_inside(const TriangleMesh& mesh, double spacing
   std::vector<Vec3> inside;
   for (int j = 0; j < count.y(); ++j) {
     for (int k = 0; k < count.z(); ++k) {
-      std::vector<Crossing>& row = rows[static_cast<std::size_t>(j) * count.z() + k];
-      std::sort(row.begin(), row.end(), [](const Crossing& p, const Crossing& q) { return p.x < q.x; });
+      std::vector<RowCrossing>& row = rows[static_cast<std::size_t>(j) * count.z() + k];
+      std::sort(row.begin(), row.end(), [](const RowCrossing& p, const RowCrossing& q) { return p.x < q.x; });
       std::size_t next = 0;
       int winding = 0;
       for (int i = 0; i < count.x(); ++i) {

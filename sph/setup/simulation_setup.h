@@ -60,6 +60,9 @@ struct Boundary {
   BoundaryMotion motion{};               ///< Of the mesh; by default it rests.
   Vec3 surface_velocity = Vec3::Zero();  ///< Of the surface along the wall, as of a conveyor belt (m/s); turns with it.
   double adhesion = 0;  ///< Work of adhesion over 2 gamma: 0: not wetted, 0.5: contact angle 90 degrees, 1: wetted.
+  bool hollow =
+      false;  ///< Whether the inside of a closed mesh may hold fluid; else fluid that begins there is left out.
+  std::string name{};  ///< For messages; may be empty.
 };
 
 inline constexpr Range kSlip = at_least(0, 1);

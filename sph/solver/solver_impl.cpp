@@ -17,6 +17,7 @@
 #include "sph/setup/setup_checks.h"
 #include "sph/viscosity/rheology.h"
 #include "sph/walls/boundary_sampling.h"
+#include "sph/walls/fluid_in_walls.h"
 
 namespace flowskin::sph {
 
@@ -74,12 +75,14 @@ SolverImpl::SolverImpl(SimulationSetup setup)
     : settings_((check_setup(setup), setup.settings)), periodic_(settings_.domain, settings_.periodic) {
   wall_kernel_ = make_wall_kernel(settings_);
   boundary_ = BoundaryParticles(setup.boundaries, settings_, wall_kernel_, periodic_);
-  const std::vector<FluidPoint> points = fill_bodies(setup.bodies, settings_.spacing, boundary_.positions(), periodic_);
+  std::vector<FluidPoint> points = fill_bodies(setup.bodies, settings_.spacing, boundary_.positions(), periodic_);
   for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
     emitters_.emplace_back(setup.emitters[e], settings_.spacing, "emitter " + std::to_string(e + 1));
     setup.emitters[e].center = emitters_.back().outlet().center();
   }
-  warnings_ = check_inside_domain(settings_, points, setup.bodies.size(), emitters_);
+  warnings_ = leave_out_fluid_in_walls(setup.boundaries, setup.bodies.size(), periodic_, points, emitters_);
+  const std::vector<std::string> outside = check_inside_domain(settings_, points, setup.bodies.size(), emitters_);
+  warnings_.insert(warnings_.end(), outside.begin(), outside.end());
   sinks_ = std::move(setup.sinks);
   for (Sink& sink : sinks_) sink.box = sink.shape == Sink::Shape::mesh ? bounding_box(sink.mesh) : sink.box;
   settings_ = complete_settings(setup, points, boundary_.greatest_speed());

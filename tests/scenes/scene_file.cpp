@@ -67,7 +67,7 @@ const char* const full_scene = R"({
       "cuts": [{"min": [-0.1, 2, -1], "max": [0.1, 3, 1]}, {"min": [0.2, 2, -1], "max": [0.3, 3, 1]}]},
     {"shape": "mesh", "file": "meshes/stairs.obj", "scale": 2, "rotate": [10, 20, 30], "translate": [0.1, 0.2, 0.3]}],
   "emitters": [{"center": [0, 4, 0], "direction": [0, -2, 1], "radius": 0.2, "speed": 1.5, "start": 0.5, "stop": 2, "max_particles": 500}],
-  "boundaries": [{"file": "meshes/stairs.obj", "adhesion": 0.3, "scale": [1, 2, 3], "rotate": [0, 90, 0], "translate": [1, 0, 0],
+  "boundaries": [{"file": "meshes/stairs.obj", "adhesion": 0.3, "hollow": true, "scale": [1, 2, 3], "rotate": [0, 90, 0], "translate": [1, 0, 0],
     "slip": 0.4, "surface_velocity": [0.5, 0, 0.1], "interpolation": "smooth", "pivot": [0.1, 1, 0],
     "keyframes": [{"time": -0.5, "translate": [0, 1, 0], "rotate": [5, 0, 7]}, {"time": 2.5, "translate": [3, 0, 1], "rotate": [0, 400, 0]}], "visible": false, "color": [0.1, 0.2, 0.3]}],
   "tracking": {"enabled": false, "velocity": "total", "integrator": "rk4", "steps_per_frame": 3, "max_motion": 0.2,

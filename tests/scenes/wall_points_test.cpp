@@ -60,7 +60,7 @@ TEST(WallPoints, AreSampledOnceForAllStates) {
   for (const std::string particles :
        {R"("source": "simulation")",
         R"("source": "prescribed", "motion": {"type": "translation", "velocity": [1, 0, 0]})"}) {
-    Scene scene = scene_with(R"([{"file": "meshes/stairs.obj"}])", "{}", particles);
+    Scene scene = scene_with(R"([{"file": "meshes/stairs.obj", "hollow": true}])", "{}", particles);
     const auto source = make_source(scene);
     const tracking::Walls first = source->state().walls;
     ASSERT_EQ(first.size(), 1U);

@@ -130,7 +130,7 @@ TEST(Emitters, BlockedOutletCloses) {
   setup.settings.spacing = 0.05;
   setup.settings.max_speed = 3;
   setup.settings.viscosity = 0.01;  // else the jet's energy stays in the box, which boils
-  setup.boundaries.push_back({closed_box({-0.2, 0, -0.2}, {0.2, 0.4, 0.2}), 0});
+  setup.boundaries.push_back(tank(closed_box({-0.2, 0, -0.2}, {0.2, 0.4, 0.2}), 0));
   setup.emitters.push_back(rectangle(0.2, 0.2));
   setup.emitters[0].center = {0, 0.35, 0};
   Sink sink;
@@ -211,7 +211,7 @@ TEST(Sinks, TankWithInflowAndOutflowComesToASteadyLevel) {
   setup.settings.spacing = spacing;
   setup.settings.viscosity = 0.002;
   setup.settings.max_speed = 3;
-  setup.boundaries.push_back({closed_box({0, 0, 0}, {0.6, 1, 0.4}), 0});
+  setup.boundaries.push_back(tank(closed_box({0, 0, 0}, {0.6, 1, 0.4}), 0));
   Emitter emitter = rectangle(0.1, 0.2);
   emitter.center = {0.1, 0.7, 0.2};
   emitter.speed = 0.8;

@@ -102,7 +102,7 @@ SimulationSetup tank(const Vec3& velocity) {
   setup.settings.viscosity = 0.02;
   setup.settings.max_speed = 3;
   setup.settings.max_time_step = 3e-4;  // the acoustic limit depends on the speed of the frame
-  Boundary box{closed_box({0, 0, 0}, {0.5, 0.6, 0.3}), 0};
+  Boundary box = tank(closed_box({0, 0, 0}, {0.5, 0.6, 0.3}), 0);
   if (!velocity.isZero(0)) box.motion = translation(velocity);
   setup.boundaries.push_back(box);
   return setup;
@@ -170,7 +170,7 @@ TEST(MovingWalls, TurningBoxTakesItsFluidAlong) {
   SimulationSetup setup = block_setup(0.025, {-0.125, -0.125, -0.125}, {0.125, 0.125, 0.125});
   setup.settings.gravity.setZero();
   setup.settings.viscosity = 0.05;
-  Boundary box{closed_box({-0.125, -0.125, -0.125}, {0.125, 0.125, 0.125}), 0};
+  Boundary box = tank(closed_box({-0.125, -0.125, -0.125}, {0.125, 0.125, 0.125}), 0);
   box.motion.keyframes = {{0, zero, zero}, {10, zero, {0, 3600, 0}}};
   setup.boundaries.push_back(box);
   Solver solver(setup);
@@ -211,7 +211,7 @@ TEST(MovingWalls, PistonLosesNothing) {
     SimulationSetup setup = block_setup(0.03, {0, -0.12, -0.12}, {0.24, 0.12, 0.12});
     setup.settings.gravity.setZero();
     setup.settings.viscosity = 0.002;
-    setup.boundaries = {{tube(3, 0.12), 0}, {upright_sheet(-0.02, 0.12), 0}};
+    setup.boundaries = {tank(tube(3, 0.12), 0), {upright_sheet(-0.02, 0.12), 0}};
     setup.boundaries[1].motion = translation({speed, 0, 0});
     Solver solver(setup);
     EXPECT_GE(solver.settings().max_speed, speed);
@@ -237,7 +237,7 @@ TEST(MovingWalls, PaddleIsNeverCrossed) {
   constexpr double half = 0.09;
   SimulationSetup setup = block_setup(0.03, {-0.15, -0.15, -0.15}, {0.15, 0.09, 0.15});
   setup.settings.viscosity = 0.001;
-  setup.boundaries = {{closed_box({-0.15, -0.15, -0.15}, {0.15, 0.3, 0.15}), 0}, {upright_sheet(0, half), 0}};
+  setup.boundaries = {tank(closed_box({-0.15, -0.15, -0.15}, {0.15, 0.3, 0.15}), 0), {upright_sheet(0, half), 0}};
   BoundaryMotion& motion = setup.boundaries[1].motion;
   motion.keyframes = {{0, zero, zero}, {1, zero, {0, 720, 0}}};
   Solver solver(setup);
@@ -266,7 +266,7 @@ TEST(MovingWalls, WallsThatCloseInKeepTheContainerTight) {
   setup.settings.gravity.setZero();
   TriangleMesh can = tube(0.06, 0.06);
   add_quad(can, {0.06, -0.06, -0.06}, {0.06, 0.06, -0.06}, {0.06, 0.06, 0.06}, {0.06, -0.06, 0.06});
-  setup.boundaries = {{can, 0}, {upright_sheet(-0.005, 0.06), 0}};
+  setup.boundaries = {tank(can, 0), {upright_sheet(-0.005, 0.06), 0}};
   setup.boundaries[1].motion = translation({0.5, 0, 0}, 0.12);
   Solver solver(setup);
   try {

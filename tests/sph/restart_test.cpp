@@ -47,7 +47,7 @@ struct Case {
 SimulationSetup splash() {
   SimulationSetup setup = block_setup(0.025, {0.05, 0.1, 0.05}, {0.2, 0.3, 0.2});
   setup.settings.viscosity = 1e-3;
-  setup.boundaries.push_back({closed_box({0, 0, 0}, {0.3, 0.6, 0.3}), 0.5});
+  setup.boundaries.push_back(tank(closed_box({0, 0, 0}, {0.3, 0.6, 0.3}), 0.5));
   return setup;
 }
 
@@ -254,7 +254,7 @@ TEST(Restart, AlteredStatesAreRefusedOrHarmless) {
   setup.settings.wall_drag = 1;
   setup.settings.xsph = 0.1;
   setup.settings.max_speed = 2;
-  setup.boundaries.push_back({closed_box({0, 0, 0}, {0.3, 0.6, 0.3}), 0.5});
+  setup.boundaries.push_back(tank(closed_box({0, 0, 0}, {0.3, 0.6, 0.3}), 0.5));
   Emitter emitter;
   emitter.center = {0.15, 0.4, 0.15};
   emitter.radius = 0.05;

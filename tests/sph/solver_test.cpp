@@ -15,7 +15,7 @@ namespace {
 SimulationSetup busy_setup() {
   SimulationSetup setup = block_setup(0.04, {0, 0, 0}, {0.6, 0.8, 0.5});
   setup.settings.viscosity = 0.005;
-  setup.boundaries.push_back({closed_box({0, 0, 0}, {1.2, 1.5, 0.5}), 0.3});
+  setup.boundaries.push_back(tank(closed_box({0, 0, 0}, {1.2, 1.5, 0.5}), 0.3));
   Emitter emitter;
   emitter.center = {0.8, 1.2, 0.25};
   emitter.radius = 0.12;
@@ -207,7 +207,7 @@ TEST(Solver, OtherKernelsAndOptionsRun) {
       setup.settings.support_radius = 2.5;
       setup.settings.xsph = 0.3;
       setup.settings.viscosity = 0.01;
-      setup.boundaries.push_back({closed_box({0, 0, 0}, {0.8, 0.8, 0.4}), 0});
+      setup.boundaries.push_back(tank(closed_box({0, 0, 0}, {0.8, 0.8, 0.4}), 0));
       Solver solver(setup);
       solver.advance_to(0.4);
       for (const Vec3& p : solver.state().positions) {

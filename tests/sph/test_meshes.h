@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 
 #include "sph/solver.h"
 
@@ -32,6 +33,13 @@ inline TriangleMesh closed_box(const Vec3& a, const Vec3& b) {
   mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
                     {3, 7, 6}, {3, 6, 2}, {0, 4, 7}, {0, 7, 3}, {1, 2, 6}, {1, 6, 5}};
   return mesh;
+}
+
+/// A closed wall that holds fluid.
+inline Boundary tank(TriangleMesh mesh, double slip) {
+  Boundary wall{std::move(mesh), slip};
+  wall.hollow = true;
+  return wall;
 }
 
 /// A sphere of the given number of rings.

@@ -82,7 +82,7 @@ SimulationSetup divided_tank(const Case& which, bool left_too) {
     left.velocity = {0, 0.5, 0.3};
     setup.bodies.push_back(left);
   }
-  setup.boundaries.push_back({closed_box({-0.15, 0, -0.09}, {0.15, 0.4, 0.09}), 0});
+  setup.boundaries.push_back(tank(closed_box({-0.15, 0, -0.09}, {0.15, 0.4, 0.09}), 0));
   TriangleMesh partition;
   add_quad(partition, {0, 0, -0.09}, {0, 0.4, -0.09}, {0, 0.4, 0.09}, {0, 0, 0.09});
   setup.boundaries.push_back({partition, 0});

@@ -90,7 +90,7 @@ SimulationSetup shot(const TriangleMesh& wall, const std::vector<FluidBody>& bod
   setup.settings.gravity.setZero();
   setup.settings.viscosity = 0.0005;
   setup.bodies = bodies;
-  setup.boundaries.push_back({wall, 0});
+  setup.boundaries.push_back(tank(wall, 0));
   return setup;
 }
 
@@ -292,7 +292,7 @@ TEST(Gaps, AreNotSeenWhereThereAreNone) {
   // Fluid that falls on a floor of triangles smaller than its particles, and into the corners of a box.
   SimulationSetup setup = shot(fine_floor(0.3, 30), {block({-0.09, 0.03, -0.09}, {0.09, 0.21, 0.09}, {0.5, -3, 0.4})});
   EXPECT_EQ(shoot(setup, 0.06).statistics.kept_out_of_gaps, 0U);
-  setup.boundaries = {{closed_box({-0.1, 0, -0.1}, {0.12, 0.3, 0.12}), 0}};
+  setup.boundaries = {tank(closed_box({-0.1, 0, -0.1}, {0.12, 0.3, 0.12}), 0)};
   const Outcome outcome = shoot(setup, 0.15);
   EXPECT_EQ(outcome.statistics.kept_out_of_gaps, 0U);
   EXPECT_EQ(outcome.passed, 0);
@@ -471,7 +471,7 @@ TEST(Gaps, ThatCloseOnFluidLetItOut) {
   // A plate comes down on a floor, to 0.6 spacings.
   SimulationSetup setup = shot(sheet(0.4, 0), {block({-0.06, 0, -0.06}, {0.06, 0.06, 0.06}, Vec3::Zero())});
   setup.settings.max_speed = 6;
-  setup.boundaries.push_back({closed_box({-0.06, 0.068, -0.06}, {0.06, 0.1, 0.06}), 0});
+  setup.boundaries.push_back(tank(closed_box({-0.06, 0.068, -0.06}, {0.06, 0.1, 0.06}), 0));
   setup.boundaries[1].motion = motion_of({{0, Vec3::Zero(), Vec3::Zero()}, {0.25, Vec3(0, -0.05, 0), Vec3::Zero()}},
                                          BoundaryMotion::Interpolation::smooth);
   const Outcome outcome = shoot(setup, 0.3);

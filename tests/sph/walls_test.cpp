@@ -11,7 +11,7 @@ namespace {
 TEST(Walls, HydrostaticBlockSettles) {
   SimulationSetup setup = block_setup(0.025, {0, 0, 0}, {0.25, 0.25, 0.25});
   setup.settings.viscosity = 0.01;
-  setup.boundaries.push_back({closed_box({0, 0, 0}, {0.25, 0.5, 0.25}), 0});
+  setup.boundaries.push_back(tank(closed_box({0, 0, 0}, {0.25, 0.5, 0.25}), 0));
   Solver solver(setup);
   EXPECT_EQ(solver.particle_count(), 1000U);
   const double height = solver.energy().potential;
@@ -39,7 +39,7 @@ TEST(Walls, PressureAtTheBottomCarriesTheWeight) {
   // Tait: the compression at depth d is g d / c^2 to first order.
   SimulationSetup setup = block_setup(0.025, {0, 0, 0}, {0.25, 0.5, 0.25});
   setup.settings.viscosity = 0.02;
-  setup.boundaries.push_back({closed_box({0, 0, 0}, {0.25, 0.7, 0.25}), 1});
+  setup.boundaries.push_back(tank(closed_box({0, 0, 0}, {0.25, 0.7, 0.25}), 1));
   Solver solver(setup);
   const double c = solver.settings().speed_of_sound;
   double low = 0, low_count = 0;

@@ -52,6 +52,12 @@ TEST(VolumeOutsideWalls, AWallAwayFromTheFluidAndAnOpenSheetChangeNothing) {
   EXPECT_NEAR(WallSolids(scene_with(sheet)).volume_outside(film(), 0), 0.2, 1e-12);
 }
 
+TEST(VolumeOutsideWalls, TheInsideOfAHollowWallIsOutside) {
+  scenes::Scene scene = scene_with(box({-1, -1, -1}, {2, 0, 2}));
+  scene.boundaries[0].boundary.hollow = true;
+  EXPECT_NEAR(WallSolids(scene).volume_outside(film(), 0), 0.2, 1e-12);
+}
+
 TEST(VolumeOutsideWalls, GoesWithAMovingWall) {
   sph::BoundaryMotion rises;
   rises.keyframes = {{0, {0, -1, 0}, Vec3::Zero()}, {1, {0, 0, 0}, Vec3::Zero()}};

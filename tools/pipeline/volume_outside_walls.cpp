@@ -30,7 +30,8 @@ struct WallSolids::Solid {
 
 WallSolids::WallSolids(const scenes::Scene& scene) : spacing_(scene.particles.spacing) {
   for (const scenes::BoundarySpec& wall : scene.boundaries)
-    if (sph::is_closed(wall.boundary.mesh)) solids_.push_back(std::make_unique<Solid>(wall.boundary));
+    if (!wall.boundary.hollow && sph::is_closed(wall.boundary.mesh))
+      solids_.push_back(std::make_unique<Solid>(wall.boundary));
 }
 
 WallSolids::~WallSolids() = default;

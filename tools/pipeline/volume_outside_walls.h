@@ -18,7 +18,7 @@ class WallSolids {
   WallSolids(WallSolids&&) noexcept;
 
   /// Volume of the mesh (m^3) once each vertex less than a spacing within a closed wall is put onto its surface; exact
-  /// for flat walls. Open sheets have no inside. @param time of the walls (s)
+  /// for flat walls. Open sheets and hollow walls have no inside. @param time of the walls (s)
   double volume_outside(const tracking::SurfaceMesh& mesh, double time) const;
 
  private:
