@@ -260,6 +260,21 @@ TEST_F(IoTest, ACollectionOfWindowsNamesItsFiles) {
   for (const std::size_t k : {0, 1}) expect_particles(read_sequence_file(sequence, k), k, {"a.pvd", 2, true, true});
 }
 
+/// Files that have been moved are found beside the collection, with as many of their folders as are there.
+TEST_F(IoTest, ACollectionFromAnotherComputerNamesItsFiles) {
+  std::filesystem::create_directory(path("data"));
+  std::filesystem::copy(data_file("step_0.vtp"), path("data/step_0.vtp"));
+  std::filesystem::copy(data_file("step_1.vtp"), path("step_1.vtp"));
+  RecordedSpec spec;
+  spec.files = {write_text("a.pvd",
+                           "<VTKFile type=\"Collection\"><Collection>"
+                           "<DataSet timestep=\"0\" file=\"C:\\sim\\run 1\\data\\step_0.vtp\"/>"
+                           "<DataSet timestep=\"1\" file=\"/home/else/step_1.vtp\"/></Collection></VTKFile>")};
+  const ParticleSequence sequence = open_sequence(spec, "/");
+  EXPECT_EQ(sequence.places[0].file, path("data/step_0.vtp"));
+  EXPECT_EQ(sequence.places[1].file, path("step_1.vtp"));
+}
+
 /// A run over the steps of one file is saved in the middle and goes on; another file is refused.
 TEST_F(IoTest, AFileOfManyStepsCanBeResumed) {
   std::string text = read_bytes(data_file("plain.dump"));

@@ -263,7 +263,7 @@ TEST_F(RecordedSourceTest, GapsInTheNumbersAreMissingFiles) {
   const NumberedFiles steps = files_of_patterns({(folder_ / "step_*.csv").string()});
   EXPECT_EQ(steps.steps, (std::vector<std::uint64_t>{0, 1, 2}));
   EXPECT_EQ(steps.missing, "");
-  EXPECT_THAT(steps.notes, ElementsAre(HasSubstr("1033, 2071, 3110")));
+  EXPECT_THAT(steps.uneven, HasSubstr("1033, 2071, 3110"));
 }
 
 TEST_F(RecordedSourceTest, FilesWithoutEndsAndOneFolderATime) {

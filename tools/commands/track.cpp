@@ -233,7 +233,9 @@ int list_files(const ParticleSequence& sequence) {
   for (const std::string& warning : sequence.warnings) warn(warning);
   for (const std::string& note : sequence.notes) say_line(note);
   for (std::size_t k = 0; k < sequence.places.size(); ++k)
-    put(fmt::format("{}  {:.9g} s  {}\n", k, sequence.times[k], sequence.places[k].name()));
+    put(fmt::format(
+        "{}  {:.9g} s  {}{}\n", k, sequence.times[k], sequence.places[k].name(),
+        sequence.places[k].more.empty() ? "" : fmt::format(" and {} more", sequence.places[k].more.size())));
   return 0;
 }
 
