@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/bounds.h"
 #include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/json_particles.h"
@@ -39,9 +40,8 @@ ParticleNeeds needs_of(const RecordedSpec& spec) {
   needs.ids = spec.ids == RecordedSpec::Ids::automatic;
   needs.keep = spec.keep;
   if (!spec.region.empty()) {
-    if (spec.region.size() != 2 || ((spec.region[1] - spec.region[0]).array() < 0).any())
-      throw InputError("particles.recorded.region: expected two corners, the lower one first");
-    needs.region = sph::Box{spec.region[0], spec.region[1]};
+    if (spec.region.size() != 2) throw InputError("particles.recorded.region: expected two corners");
+    needs.region = sph::Box{spec.region[0].cwiseMin(spec.region[1]), spec.region[0].cwiseMax(spec.region[1])};
   }
   needs.skip_invalid = spec.skip_invalid;
   needs.skip_duplicates = spec.skip_duplicates;
@@ -85,6 +85,7 @@ class SequenceOpener {
     if (has_many_steps) take_steps();
     const ParticleTable table = sequence_.tables->table(sequence_.places.front());
     sequence_.first = particles_of_file(table, sequence_.places.front().name(), sequence_.needs);
+    refuse_if_none_is_left();
     if (sequence_.places.size() == 1)
       sequence_.notes.push_back(fmt::format(
           "a single frame: its surface is made, {}",
@@ -120,6 +121,33 @@ class SequenceOpener {
   }
 
  private:
+  /// @throws InputError where the options leave out every particle of every file; it names those that do.
+  void refuse_if_none_is_left() const {
+    const ParticleNeeds& needs = sequence_.needs;
+    if (sequence_.first.left_out.all() == 0 || !sequence_.first.state.ids.empty()) return;
+    LeftOut left_out = sequence_.first.left_out;
+    for (std::size_t k = 1; k < sequence_.places.size(); ++k) {
+      const FrameTables::Place& place = sequence_.places[k];
+      const ParticleFile file = particles_from_table(sequence_.tables->table(place), place.name(), needs);
+      if (!file.state.ids.empty()) return;
+      left_out += file.left_out;
+    }
+    const ParticleFile all =
+        particles_from_table(sequence_.tables->table(sequence_.places.front()), sequence_.places.front().name(),
+                             {.ids = false, .skip_invalid = true});
+    std::string where;
+    if (needs.region && !all.state.positions.empty()) {
+      const Box box = bounds(all.state.positions);
+      where =
+          fmt::format(". Those of the first file lie between ({:.4g}, {:.4g}, {:.4g}) and ({:.4g}, {:.4g}, {:.4g}) m",
+                      box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z());
+    }
+    throw InputError(fmt::format(
+        "{}: no particle is left{}: of {} in all, {} are left out{}", sequence_.places.front().name(),
+        sequence_.places.size() > 1 ? fmt::format(" in this and the other {} frames", sequence_.places.size() - 1) : "",
+        left_out.all(), left_out_text(left_out), where));
+  }
+
   /// A single .pvd or .vtk.series names the files and their times. Files of one time are parts of one frame.
   bool take_collection() {
     if (spec_.files.size() != 1) return false;
