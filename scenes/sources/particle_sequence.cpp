@@ -142,10 +142,11 @@ class SequenceOpener {
           fmt::format(". Those of the first file lie between ({:.4g}, {:.4g}, {:.4g}) and ({:.4g}, {:.4g}, {:.4g}) m",
                       box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z());
     }
-    throw InputError(fmt::format(
-        "{}: no particle is left{}: of {} in all, {} are left out{}", sequence_.places.front().name(),
-        sequence_.places.size() > 1 ? fmt::format(" in this and the other {} frames", sequence_.places.size() - 1) : "",
-        left_out.all(), left_out_text(left_out), where));
+    const std::size_t others = sequence_.places.size() - 1;
+    throw InputError(
+        fmt::format("{}: no particle is left{}; left out of {}: {}{}", sequence_.places.front().name(),
+                    others > 0 ? fmt::format(" in this and {} other frame{}", others, others == 1 ? "" : "s") : "",
+                    left_out.all(), left_out_text(left_out), where));
   }
 
   /// A single .pvd or .vtk.series names the files and their times. Files of one time are parts of one frame.

@@ -526,8 +526,8 @@ TEST_F(RecordedSourceTest, OptionsThatLeaveNoParticleAreNamed) {
   spec.keep = "x > 0.5";
   spec.region = {{9, 9, 9}, {8, 8, 8}};
   const auto opened = [&] { return error_of([&] { open_sequence(spec, folder_.string()); }); };
-  EXPECT_THAT(opened(), AllOf(HasSubstr("no particle is left in this and the other 1 frames"),
-                              HasSubstr("of 4 in all, 2 by --keep, 2 by --region are left out"),
+  EXPECT_THAT(opened(), AllOf(HasSubstr("no particle is left in this and 1 other frame; "),
+                              HasSubstr("left out of 4: 2 by --keep, 2 by --region"),
                               HasSubstr("between (0, 0, 0) and (1, 2, 3) m")));
   spec.region = {{2, 2, 9}, {-1, 1, 2}};  // corners in any order
   EXPECT_EQ(opened(), "no error");
