@@ -1,9 +1,11 @@
 #include "scenes/scene_file.h"
 
+#include <algorithm>
 #include <cstdint>
 
 #include "common/errors.h"
 #include "scenes/io/read_bytes.h"
+#include "scenes/nearest_name.h"
 #include "scenes/scene_checks.h"
 #include "scenes/schema/schema.h"
 
@@ -75,6 +77,20 @@ void set_tracking_key(TrackingSpec& tracking, const std::string& key, const std:
   KeyTable keys;
   add_tracking_keys(keys, tracking);
   set_key(keys, "tracking." + key, value);
+}
+
+bool is_like_scene(const std::string& text) {
+  JsonNode root;
+  try {
+    root = parse_json(text, "");
+  } catch (const InputError&) {
+    return true;
+  }
+  std::vector<std::string> known;
+  for (const SceneKey& key : scene_keys()) known.push_back(key.path.substr(0, key.path.find_first_of(".[")));
+  return std::any_of(root.children.begin(), root.children.end(), [&](const JsonNode& child) {
+    return std::find(known.begin(), known.end(), child.key) != known.end() || !did_you_mean(child.key, known).empty();
+  });
 }
 
 std::vector<SceneKey> scene_keys() {

@@ -21,6 +21,8 @@ std::string write_scene(const Scene& scene);
 /// Sets a key of the section "tracking" (its name alone) to a value as it would stand in a scene file; quotes may be
 /// left out. @throws InputError with what was expected, where there is no such key or it takes no such value.
 void set_tracking_key(TrackingSpec& tracking, const std::string& key, const std::string& value);
+/// Whether a JSON text has a key that scenes have at the top, or one much like it; true also where it is no JSON.
+bool is_like_scene(const std::string& text);
 /// All keys in the order of the file.
 std::vector<SceneKey> scene_keys();
 

@@ -181,6 +181,15 @@ void describe_mesh(FileInfo& info, const std::string& name, const ParticleTable&
   info.lines.insert(info.lines.begin() + 1, property_line(table.columns));
 }
 
+void describe_tables(FileInfo& info, const std::string& name, const std::vector<ParticleTable>& steps) {
+  describe_steps(info, steps);
+  for (const std::string& note : steps.front().notes) info.lines.push_back("note: " + note);
+  if (steps.front().polygons > 0)
+    describe_mesh(info, name, steps.front());
+  else
+    describe_particles(info, name, steps.front());
+}
+
 }  // namespace
 
 FileInfo describe_file(const std::filesystem::path& file) {
@@ -192,33 +201,68 @@ FileInfo describe_file(const std::filesystem::path& file) {
     describe_surface(info, mesh.positions, mesh.triangles);
     return info;
   }
-  const std::vector<ParticleTable> steps = read_particle_steps(file);
-  describe_steps(info, steps);
-  for (const std::string& note : steps.front().notes) info.lines.push_back("note: " + note);
-  if (steps.front().polygons > 0)
-    describe_mesh(info, file.string(), steps.front());
-  else
-    describe_particles(info, file.string(), steps.front());
+  describe_tables(info, file.string(), read_particle_steps(file));
   return info;
 }
+
+namespace {
+
+/// The files of one frame, whose particles are read as one.
+FileInfo describe_frame(const FrameTables::Place& frame) {
+  if (frame.more.empty()) return describe_file(frame.file);
+  FileInfo info;
+  std::vector<ParticleTable> steps;
+  steps.push_back(FrameTables().table(frame));
+  describe_tables(info, frame.name(), steps);
+  return info;
+}
+
+bool is_there(const std::filesystem::path& file) {
+  std::error_code error;
+  return std::filesystem::exists(file, error);
+}
+
+/// What tells the first file from the last: their names or, where those are the same, those of their folders, too.
+std::string name_beside(const std::filesystem::path& file, const std::filesystem::path& other) {
+  return file.filename() != other.filename() || file == other
+             ? file.filename().string()
+             : (file.parent_path().filename() / file.filename()).string();
+}
+
+}  // namespace
 
 FileInfo describe_sequence(const std::filesystem::path& place) {
   RecordedSpec spec;
   spec.files = {std::filesystem::absolute(place).string()};
-  std::vector<std::filesystem::path> files = sequence_files(spec, "");
-  std::erase(files, std::filesystem::path(spec.files.front()));
+  const std::vector<FrameTables::Place> frames = sequence_places(spec, "");
   FileInfo info;
-  info.lines.push_back(fmt::format("sequence: {} files, {} to {}; of the first:", files.size(),
-                                   files.front().filename().string(), files.back().filename().string()));
-  const FileInfo first = describe_file(files.front());
-  info.sound = first.sound;
-  info.lines.insert(info.lines.end(), first.lines.begin(), first.lines.end());
-  for (const std::filesystem::path& file : files) {
-    std::error_code error;
-    if (std::filesystem::exists(file, error)) continue;
-    info.sound = false;
-    info.lines.push_back(fmt::format("missing: {}", file.string()));
+  std::size_t files = 0;
+  std::vector<std::string> missing;
+  const FrameTables::Place* whole = nullptr;  // the first frame that is all there
+  for (const FrameTables::Place& frame : frames) {
+    std::vector<std::filesystem::path> parts = frame.more;
+    parts.insert(parts.begin(), frame.file);
+    files += parts.size();
+    const std::size_t missing_before = missing.size();
+    for (const std::filesystem::path& part : parts)
+      if (!is_there(part)) missing.push_back(fmt::format("missing: {}", part.string()));
+    if (whole == nullptr && missing.size() == missing_before) whole = &frame;
   }
+  const std::filesystem::path &first = frames.front().file, &last = frames.back().file;
+  info.lines.push_back(fmt::format("sequence: {} files{}, {} to {}{}", files,
+                                   files > frames.size() ? fmt::format(" for {} times", frames.size()) : "",
+                                   name_beside(first, last), name_beside(last, first),
+                                   whole == nullptr           ? ""
+                                   : whole != &frames.front() ? fmt::format("; of {}:", whole->name())
+                                   : whole->more.empty()      ? "; of the first:"
+                                                              : "; of the first, its parts read as one:"));
+  if (whole != nullptr) {
+    const FileInfo described = describe_frame(*whole);
+    info.sound = described.sound;
+    info.lines.insert(info.lines.end(), described.lines.begin(), described.lines.end());
+  }
+  info.sound = info.sound && missing.empty();
+  info.lines.insert(info.lines.end(), missing.begin(), missing.end());
   return info;
 }
 

@@ -131,7 +131,8 @@ class JsonParticles {
       }
       for (std::size_t i = 0; i < values.size(); ++i) add_member(table, key, i, values[i]);
     }
-    if (table.columns.empty() && !arrays.empty()) {
+    if (arrays.empty()) fail("the object is empty; expected \"positions\", or \"x\", \"y\" and \"z\", each an array");
+    if (table.columns.empty()) {
       std::vector<std::string> keys;
       for (const auto& member : arrays.items()) keys.push_back(member.key().substr(0, 40));
       keys.resize(std::min<std::size_t>(keys.size(), 20));

@@ -13,7 +13,7 @@
 namespace flowskin::scenes {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, NumberType>, 11> npy_types{{{"b1", NumberType::uint8},
+constexpr std::array<std::pair<std::string_view, NumberType>, 12> npy_types{{{"b1", NumberType::uint8},
                                                                              {"i1", NumberType::int8},
                                                                              {"u1", NumberType::uint8},
                                                                              {"i2", NumberType::int16},
@@ -22,6 +22,7 @@ constexpr std::array<std::pair<std::string_view, NumberType>, 11> npy_types{{{"b
                                                                              {"u4", NumberType::uint32},
                                                                              {"i8", NumberType::int64},
                                                                              {"u8", NumberType::uint64},
+                                                                             {"f2", NumberType::float16},
                                                                              {"f4", NumberType::float32},
                                                                              {"f8", NumberType::float64}}};
 constexpr std::size_t most_npy_fields = 4096;
@@ -52,9 +53,7 @@ class NpyHeaderParser {
       if (!accept(',') && !rest_.starts_with('}')) fail("expected , or }");
     }
     if (!has_type || !has_shape) fail("descr or shape is missing");
-    if (header_.fields.empty())
-      throw NpyNotNumbers(fmt::format(
-          "{}: the array holds no numbers but words or pickled Python objects; expected float or int", name_));
+    if (header_.fields.empty()) throw NpyNotNumbers(fmt::format("{}: the array holds {}", name_, what_else()));
     return std::move(header_);
   }
 
@@ -149,14 +148,34 @@ class NpyHeaderParser {
       const bool known = !type.empty() && std::string_view("OSUVMmcfg").find(type.front()) != std::string_view::npos;
       std::uint64_t letters = 0;
       if (known) std::from_chars(type.data() + 1, type.data() + type.size(), letters);
+      other_kind_ = known && other_kind_ == 0 ? type.front() : other_kind_;
       if (!known || letters > std::uint64_t{1} << 30) fail("a type that is not understood");
       size = count * letters * (type.front() == 'U' ? 4 : 1) + (type.front() == 'O' ? 8 * count : 0);
     }
     header_.record_size += size;
   }
 
+  /// Of a type that is none of the real numbers that are read.
+  std::string_view what_else() const {
+    switch (other_kind_) {
+      case 'c':
+        return "complex numbers; expected float or int: save the part that counts (array.real)";
+      case 'f':
+      case 'g':
+        return "numbers longer than 8 bytes; expected float or int: save array.astype(float)";
+      case 'M':
+      case 'm':
+        return "dates or durations; expected float or int";
+      case 'O':
+        return "pickled Python objects, which only Python can read; expected float or int: save array.astype(float)";
+      default:
+        return "words or raw bytes; expected float or int";
+    }
+  }
+
   std::string_view rest_;
   const std::string& name_;
+  char other_kind_ = 0;  // of a type that is not read
   NpyHeader header_;
 };
 

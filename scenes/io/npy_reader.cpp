@@ -13,6 +13,7 @@
 #include "scenes/io/named_arrays.h"
 #include "scenes/io/npy_header.h"
 #include "scenes/io/number_type.h"
+#include "scenes/io/particle_columns.h"
 #include "scenes/io/zip_reader.h"
 
 namespace flowskin::scenes {
@@ -85,7 +86,8 @@ std::vector<ParticleTable> parse_npy(std::string_view bytes, const std::string& 
 std::vector<ParticleTable> parse_npz(std::string_view bytes, const std::string& name) {
   std::vector<NamedArray> arrays;
   bool any = false;
-  std::string pickled;
+  std::string unread;  // the first array that holds no numbers, and why
+  bool is_pickled = false;
   for_each_in_zip(bytes, name, [&](const std::string& member, std::string_view content) {
     if (!member.ends_with(".npy") || !is_npy(content)) return;
     any = true;
@@ -95,8 +97,10 @@ std::vector<ParticleTable> parse_npz(std::string_view bytes, const std::string& 
         array.name = array.name.empty() ? key : array.name;
         arrays.push_back(std::move(array));
       }
-    } catch (const NpyNotNumbers&) {
-      pickled = pickled.empty() ? key : pickled;  // nobody may need it
+    } catch (const NpyNotNumbers& error) {
+      if (is_velocity_name(key)) throw InputError(error.what());  // never without a word
+      is_pickled = is_pickled || std::string_view(error.what()).find("pickled") != std::string_view::npos;
+      if (unread.empty()) unread = error.what();  // nobody may need it
     }
   });
   if (!any) throw InputError(name + ": this is a zip archive without NumPy arrays; unpack it and give the files in it");
@@ -104,12 +108,15 @@ std::vector<ParticleTable> parse_npz(std::string_view bytes, const std::string& 
   try {
     tables = tables_from_arrays(arrays, name);
   } catch (const InputError&) {
-    if (pickled.empty()) throw;
-    throw InputError(fmt::format(
-        "{}: \"{}\" is a pickled Python object, which only Python can read. PySPH writes such files where h5py is "
-        "missing; with it (python3-h5py) it writes .hdf5, which FlowSkin reads. Or convert the file: d = "
-        "pysph.solver.utils.load(FILE)['arrays']['fluid']; numpy.savez(OUT, x=d.x, y=d.y, z=d.z, u=d.u, v=d.v, w=d.w)",
-        name, pickled));
+    if (unread.empty()) throw;
+    throw InputError(
+        unread +
+        (is_pickled
+             ? ". PySPH writes such files where h5py is missing; with it (python3-h5py) it writes .hdf5, which "
+               "FlowSkin "
+               "reads. Or convert the file: d = pysph.solver.utils.load(FILE)['arrays']['fluid']; numpy.savez(OUT, "
+               "x=d.x, y=d.y, z=d.z, u=d.u, v=d.v, w=d.w)"
+             : ""));
   }
   name_format(tables, "NumPy archive");
   return tables;

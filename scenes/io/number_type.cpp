@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -19,6 +20,21 @@ void append_as(std::string_view bytes, bool swap, std::vector<Number>& numbers) 
   }
 }
 
+/// IEEE 754 half precision: a sign, 5 bits of exponent, 10 of fraction.
+double number_of_half(std::uint16_t bits) {
+  const int exponent = bits >> 10 & 31, fraction = bits & 1023;
+  const double size = exponent == 31  ? (fraction == 0 ? HUGE_VAL : std::nan(""))
+                      : exponent == 0 ? std::ldexp(fraction, -24)
+                                      : std::ldexp(1024 + fraction, exponent - 25);
+  return bits & 0x8000 ? -size : size;
+}
+
+void append_halves(std::string_view bytes, bool swap, std::vector<double>& numbers) {
+  std::vector<std::uint16_t> halves;
+  append_as<std::uint16_t>(bytes, swap, halves);
+  for (const std::uint16_t half : halves) numbers.push_back(number_of_half(half));
+}
+
 }  // namespace
 
 std::size_t size_of(NumberType type) {
@@ -28,6 +44,7 @@ std::size_t size_of(NumberType type) {
       return 1;
     case NumberType::int16:
     case NumberType::uint16:
+    case NumberType::float16:
       return 2;
     case NumberType::int32:
     case NumberType::uint32:
@@ -58,6 +75,8 @@ void append_numbers(std::string_view bytes, NumberType type, bool big_endian, st
       return append_as<std::int64_t>(bytes, swap, numbers);
     case NumberType::uint64:
       return append_as<std::uint64_t>(bytes, swap, numbers);
+    case NumberType::float16:
+      return append_halves(bytes, swap, numbers);
     case NumberType::float32:
       return append_as<float>(bytes, swap, numbers);
     case NumberType::float64:

@@ -8,7 +8,7 @@
 
 namespace flowskin::scenes {
 
-enum class NumberType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+enum class NumberType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float16, float32, float64 };
 
 std::size_t size_of(NumberType type);
 

@@ -236,6 +236,25 @@ Column usable_densities(const NamedColumn* column, bool is_faulty, std::size_t c
 
 }  // namespace
 
+LeftOut& LeftOut::operator+=(const LeftOut& other) {
+  by_keep += other.by_keep;
+  by_region += other.by_region;
+  invalid += other.invalid;
+  duplicate += other.duplicate;
+  stray += other.stray;
+  return *this;
+}
+
+std::string left_out_text(const LeftOut& left_out) {
+  std::string text;
+  for (const auto& [count, by] :
+       {std::pair(left_out.by_keep, "by --keep"), std::pair(left_out.by_region, "by --region"),
+        std::pair(left_out.invalid, "by --skip-invalid"), std::pair(left_out.duplicate, "by --skip-duplicates"),
+        std::pair(left_out.stray, "too far from all others")})
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, by);
+  return text;
+}
+
 std::string plain_column_name(const std::string& name) {
   const auto is_component = [](const std::string& text) {
     return text.size() == 1 && std::string("xyzXYZ012").find(text[0]) != std::string::npos;
@@ -371,8 +390,8 @@ ParticleTable selected(const ParticleTable& all, const std::string& name, const 
                        LeftOut& left_out) {
   ParticleTable table = all;
   if (needs.skip_invalid) table.faults.clear();  // what is at fault there is NaN
-  if (!needs.keep.empty()) table = without_rows(table, rows_that(needs.keep, all, name), left_out.unwanted);
-  if (needs.region) table = without_rows(table, rows_in(*needs.region, table, name), left_out.unwanted);
+  if (!needs.keep.empty()) table = without_rows(table, rows_that(needs.keep, all, name), left_out.by_keep);
+  if (needs.region) table = without_rows(table, rows_in(*needs.region, table, name), left_out.by_region);
   if (needs.skip_invalid) table = without_rows(table, valid_rows(table, name, needs), left_out.invalid);
   if (needs.skip_duplicates) table = without_rows(table, first_rows(table, name, needs), left_out.duplicate);
   return table;

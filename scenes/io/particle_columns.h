@@ -13,8 +13,15 @@ namespace flowskin::scenes {
 
 /// Particles that were left out as ParticleNeeds asks.
 struct LeftOut {
-  std::uint64_t unwanted = 0, invalid = 0, duplicate = 0;
+  std::uint64_t by_keep = 0, by_region = 0, invalid = 0, duplicate = 0;
+  std::uint64_t stray = 0;  ///< So far out that no grid reaches them.
+  std::uint64_t unwanted() const { return by_keep + by_region + stray; }
+  std::uint64_t all() const { return unwanted() + invalid + duplicate; }
+  LeftOut& operator+=(const LeftOut& other);
 };
+
+/// Which options left out how many, as "370 by --keep, 5 by --skip-invalid"; empty where none did.
+std::string left_out_text(const LeftOut& left_out);
 
 /// Particles and what the file told about them.
 struct ParticleFile {

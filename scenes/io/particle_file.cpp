@@ -42,20 +42,37 @@ std::vector<ParticleTable> one_step(ParticleTable table) {
   return steps;
 }
 
+[[noreturn]] void refuse_format(std::string_view what, const std::string& name) {
+  throw InputError(fmt::format("{}: cannot be read, this is {}", name, what));
+}
+
 /// Formats that are text.
 std::vector<ParticleTable> parse_text_steps(std::string_view bytes, const std::string& name) {
   std::string_view start = bytes.substr(0, telling_bytes);
   if (start.starts_with("\xEF\xBB\xBF")) start.remove_prefix(3);
   skip_space(start);
+  if (const std::string_view what = unreadable_text(bytes); !what.empty()) refuse_format(what, name);
   if (start.starts_with('<')) return one_step(parse_vtp(bytes, name));
-  if (start.find('\0') != std::string_view::npos)
+  if (start.find('\0') != std::string_view::npos) {
+    if (const std::string_view what = unreadable_ending(name); !what.empty()) refuse_format(what, name);
     throw InputError(name +
                      ": these are no particles that FlowSkin can read; expected one of the formats in "
                      "docs/track.md, such as CSV, PLY, VTK, BGEO, LAMMPS, XYZ, NumPy or HDF5");
+  }
   if (is_lammps_dump(bytes)) return parse_lammps_dump(bytes, name);
   if (start.starts_with('{') || start.starts_with('[')) return parse_json_particles(bytes, name);
   if (is_xyz(bytes)) return parse_xyz(bytes, name);
   return one_step(parse_csv(bytes, name));
+}
+
+/// Other programs' formats that are HDF5 inside are told by their ending, where no particles are found.
+std::vector<ParticleTable> parse_hdf5_file(std::string_view bytes, const std::string& name) {
+  try {
+    return parse_hdf5(bytes, name);
+  } catch (const InputError&) {
+    if (const std::string_view what = unreadable_ending(name); !what.empty()) refuse_format(what, name);
+    throw;
+  }
 }
 
 /// @param level of gzip within gzip
@@ -70,10 +87,9 @@ std::vector<ParticleTable> parse_steps(std::string_view bytes, const std::string
   if (bytes.starts_with("# vtk DataFile")) return one_step(parse_vtk(bytes, name));
   if (is_bgeo(bytes)) return one_step(parse_bgeo(bytes, name));
   if (is_npy(bytes)) return parse_npy(bytes, name);
+  if (const std::string_view what = unreadable_format(bytes); !what.empty()) refuse_format(what, name);
   if (is_zip(bytes)) return parse_npz(bytes, name);
-  if (is_hdf5(bytes)) return parse_hdf5(bytes, name);
-  if (const std::string_view what = unreadable_format(bytes); !what.empty())
-    throw InputError(fmt::format("{}: cannot be read, this is {}", name, what));
+  if (is_hdf5(bytes)) return parse_hdf5_file(bytes, name);
   return parse_text_steps(bytes, name);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "common/errors.h"
@@ -15,6 +16,7 @@ namespace {
 
 using Rows = std::vector<char>;
 constexpr int deepest = 50;
+constexpr std::size_t most_shown = 80;
 
 bool is_word_sign(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || (c & 0x80) != 0 ||
@@ -30,7 +32,7 @@ class Expression {
   Rows evaluate() {
     Rows rows = any_of();
     skip_space(rest_);
-    if (!rest_.empty()) fail("expected \"and\", \"or\" or the end");
+    if (!rest_.empty()) fail("expected a comparison, \"and\", \"or\" or the end");
     if (!fault_.empty()) throw InputError(name_ + ", " + fault_);
     return rows;
   }
@@ -38,8 +40,11 @@ class Expression {
  private:
   [[noreturn]] void fail(const std::string& what) const {
     const std::string where = rest_.empty() ? "at the end" : fmt::format("at \"{}\"", rest_.substr(0, 20));
-    throw InputError(fmt::format("--keep '{}': {} {}; an example: 'Type == 1 and z > 0.5'", text_, what, where));
+    throw InputError(fmt::format("--keep '{}': {} {}; an example: 'Type == 1 and z > 0.5'", shown(), what, where));
   }
+
+  /// The expression, as far as a message has room for it.
+  std::string shown() const { return text_.size() <= most_shown ? text_ : text_.substr(0, most_shown) + "..."; }
 
   bool take(std::string_view sign) {
     skip_space(rest_);
@@ -50,7 +55,7 @@ class Expression {
   }
 
   Rows any_of() {
-    if (++depth_ > deepest) fail("too many levels");
+    if (++depth_ > deepest) fail(fmt::format("more than {} levels of brackets or \"not\"", deepest));
     Rows rows = all_of();
     while (take("or") || take("||")) {
       const Rows others = all_of();
@@ -71,7 +76,7 @@ class Expression {
 
   Rows one() {
     if (take("not") || take("!")) {
-      if (++depth_ > deepest) fail("too many levels");
+      if (++depth_ > deepest) fail(fmt::format("more than {} levels of brackets or \"not\"", deepest));
       Rows rows = one();
       --depth_;
       std::transform(rows.begin(), rows.end(), rows.begin(), std::logical_not<>());
@@ -82,16 +87,49 @@ class Expression {
       if (!take(")")) fail("expected \")\"");
       return rows;
     }
-    const std::vector<double>& column = take_column();
-    const auto compare = take_comparison();
-    skip_space(rest_);
-    double value = 0;
-    if (!take_number(rest_, value)) fail("expected a number");
-    Rows rows;
-    for (const double number : column) rows.push_back(compare(number, value));
+    return comparisons();
+  }
+
+  /// A column of the table or a number.
+  struct Operand {
+    const std::vector<double>* column = nullptr;
+    double number = 0;
+    double at(std::size_t row) const { return column != nullptr ? (*column)[row] : number; }
+  };
+
+  /// a < b, or a < b < c and so on, which holds where each two neighbours are as they should.
+  Rows comparisons() {
+    const std::string_view start = rest_;
+    Rows rows(table_.count, 1);
+    Operand left = take_operand();
+    bool has_column = left.column != nullptr, is_first = true;
+    for (auto compare = take_comparison(); compare; compare = take_comparison()) {
+      const Operand right = take_operand();
+      has_column = has_column || right.column != nullptr;
+      for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = rows[i] && compare(left.at(i), right.at(i));
+      left = right;
+      is_first = false;
+    }
+    if (is_first) fail("expected a comparison such as == or <");
+    if (!has_column) {
+      rest_ = start;
+      fail("expected the name of a column on one side");
+    }
     return rows;
   }
 
+  Operand take_operand() {
+    skip_space(rest_);
+    double number = 0;
+    std::string_view after = rest_;
+    const bool is_number = take_number(after, number) && (after.empty() || !is_word_sign(after.front()));
+    if (!is_number) return {&take_column(), 0};
+    if (std::isnan(number)) fail("nan compares with nothing");
+    rest_ = after;
+    return {nullptr, number};
+  }
+
+  /// Nothing where none follows.
   std::function<bool(double, double)> take_comparison() {
     if (take("==")) return std::equal_to<>();
     if (take("!=")) return std::not_equal_to<>();
@@ -100,7 +138,7 @@ class Expression {
     if (take("<")) return std::less<>();
     if (take(">")) return std::greater<>();
     if (take("=")) return std::equal_to<>();
-    fail("expected a comparison such as == or <");
+    return {};
   }
 
   const std::vector<double>& take_column() {
@@ -117,7 +155,7 @@ class Expression {
       word = std::string(rest_.begin(), end);
       rest_.remove_prefix(word.size());
     }
-    if (word.empty()) fail("expected the name of a column");
+    if (word.empty()) fail("expected the name of a column or a number");
     return column_called(word);
   }
 
@@ -130,8 +168,8 @@ class Expression {
     if (found == table_.columns.end()) {
       std::vector<std::string> names;
       for (const auto& column : table_.columns) names.push_back(column.first);
-      throw InputError(
-          fmt::format("{}: --keep '{}': there is no column \"{}\"{}", name_, text_, word, did_you_mean(word, names)));
+      throw InputError(fmt::format("{}: --keep '{}': there is no column \"{}\"{}", name_, shown(),
+                                   word.substr(0, most_shown), did_you_mean(word, names)));
     }
     if (const auto fault = table_.faults.find(found->first); fault != table_.faults.end() && fault_.empty())
       fault_ = fault->second;

@@ -369,13 +369,26 @@ namespace {
 
 using PvdEntry = std::pair<double, std::filesystem::path>;
 
-/// A name in a file that names others; those of Windows have \ between folders.
+/// Whether a path starts at the root, of a drive of Windows perhaps.
+bool starts_at_root(const std::string& path) {
+  return path.starts_with('/') || (path.size() > 2 && path[1] == ':' && path[2] == '/');
+}
+
+/// A name in a file that names others; those of Windows have \ between folders. Paths from the root of another computer
+/// are looked for beside the file, with as many of their folders as are there.
 std::filesystem::path path_beside(std::string entry, const std::filesystem::path& file) {
   std::error_code error;
   const auto found = [&] { return file.parent_path() / entry; };
-  if (entry.find('\\') != std::string::npos && !std::filesystem::exists(found(), error))
-    std::replace(entry.begin(), entry.end(), '\\', '/');
-  return found();
+  if (std::filesystem::exists(found(), error)) return found();
+  std::replace(entry.begin(), entry.end(), '\\', '/');
+  if (!starts_at_root(entry) || std::filesystem::exists(found(), error)) return found();
+  const std::filesystem::path as_it_stands = found();
+  const bool of_windows = !entry.starts_with('/');
+  while (entry.find('/') != std::string::npos) {
+    entry.erase(0, entry.find('/') + 1);
+    if (std::filesystem::exists(found(), error)) return found();
+  }
+  return of_windows ? found() : as_it_stands;
 }
 
 PvdEntry entry_of(const XmlTag& tag, const std::filesystem::path& file, const XmlScanner& scanner) {

@@ -139,9 +139,9 @@ Key& KeyTable::color(std::string_view path, std::array<double, 3>& member, std::
   return add(path, bind(member, scenes::color()), "", meaning);
 }
 
-Key& KeyTable::points(std::string_view path, std::vector<Vec3>& member, std::string_view unit,
-                      std::string_view meaning) {
-  return add(path, bind(member, scenes::points()), unit, meaning);
+Key& KeyTable::points(std::string_view path, std::vector<Vec3>& member, std::string_view unit, std::string_view meaning,
+                      double limit) {
+  return add(path, bind(member, scenes::points(limit)), unit, meaning);
 }
 
 Key& KeyTable::name(std::string_view path, std::string& member, const std::vector<std::string>& names,

@@ -113,7 +113,8 @@ class KeyTable {
   Key& scale(std::string_view path, Vec3& member, std::string_view meaning);
   Key& axes(std::string_view path, std::array<bool, 3>& member, std::string_view meaning);
   Key& color(std::string_view path, std::array<double, 3>& member, std::string_view meaning);
-  Key& points(std::string_view path, std::vector<Vec3>& member, std::string_view unit, std::string_view meaning);
+  Key& points(std::string_view path, std::vector<Vec3>& member, std::string_view unit, std::string_view meaning,
+              double limit = max_coordinate);
   /// One of names that a registry gives; `documented_type` stands for their list in the documentation.
   Key& name(std::string_view path, std::string& member, const std::vector<std::string>& names, std::string_view meaning,
             std::string_view documented_type = "");

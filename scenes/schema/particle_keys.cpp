@@ -87,8 +87,8 @@ void add_recorded_keys(KeyTable& table, Scene& scene) {
             "Only particles whose columns fulfil this, such as \"Type == 1 and z > 0.5\"; empty: all.")
       .only_for(recorded);
   table
-      .points("particles.recorded.region", files.region, "m",
-              "Only particles between these two corners, the lower one first; empty: all.")
+      .points("particles.recorded.region", files.region, "m", "Only particles between these two corners; empty: all.",
+              1e9)
       .only_for(recorded);
   table
       .boolean("particles.recorded.skip_invalid", files.skip_invalid,

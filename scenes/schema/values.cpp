@@ -166,15 +166,15 @@ Kind<std::vector<std::string>> texts() {
   return {"text or list of texts", read, write};
 }
 
-Kind<std::vector<Vec3>> points() {
-  const auto read = [](const JsonNode& node) {
+Kind<std::vector<Vec3>> points(double limit) {
+  const auto read = [limit](const JsonNode& node) {
     if (node.type != JsonNode::Type::list) throw Mismatch{describe(node), ""};
     std::vector<Vec3> list;
     for (const JsonNode& child : node.children) {
       if (child.type != JsonNode::Type::list || child.children.size() != 3) {
         throw Mismatch{describe(child) + " among the points", "", child.offset};
       }
-      list.push_back(checked_triple<Vec3>(child, at_least(-max_coordinate, max_coordinate)));
+      list.push_back(checked_triple<Vec3>(child, at_least(-limit, limit)));
     }
     return list;
   };

@@ -54,6 +54,6 @@ Kind<std::array<bool, 3>> axes();
 /// Red, green, blue.
 Kind<std::array<double, 3>> color();
 /// Any number of points.
-Kind<std::vector<Vec3>> points();
+Kind<std::vector<Vec3>> points(double limit = max_coordinate);
 
 }  // namespace flowskin::scenes

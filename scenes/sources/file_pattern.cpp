@@ -137,7 +137,13 @@ std::vector<std::string> numbered_without_end(const std::vector<std::string>& na
 /// One folder a time, as OpenFOAM has them: the file that each holds.
 Paths files_in_numbered_folders(const std::filesystem::path& folder) {
   const std::vector<std::string> folders = names_in(folder, Entry::folders).value_or(std::vector<std::string>{});
-  if (order_of_names(folders).numbers.empty()) return {};
+  const NameOrder order = order_of_names(folders);
+  if (order.twins)
+    throw InputError(
+        fmt::format("{}: has the same number as {}; a sequence has one file per number: list the files that "
+                    "count",
+                    (folder / folders[order.twins->second]).string(), folders[order.twins->first]));
+  if (order.numbers.empty()) return {};
   Paths paths;
   for (const std::string& name : folders) {
     std::vector<std::string> inside = names_in(folder / name).value_or(std::vector<std::string>{});
@@ -292,10 +298,10 @@ void count_steps(const NameOrder& names, NumberedFiles& files) {
   const Raster raster = raster_of(names);
   if (!raster.is_regular || raster.stride == 0) {
     if (files.paths.size() > 1)
-      files.notes.push_back(fmt::format(
+      files.uneven = fmt::format(
           "the numbers in the names ({}) have no even steps: they only give the order, no file counts as missing, and "
           "all are the same time apart; --times-in-names would take the numbers for times",
-          listed(names.numbers)));
+          listed(names.numbers));
     return;
   }
   files.steps = raster.steps;
@@ -322,9 +328,10 @@ NumberedFiles files_of_patterns(const std::vector<std::string>& names) {
   if (names_in_order.numbers.empty() && !names_in_order.is_clock)
     refuse_several_bodies(files.paths, telling, names.size() == files.paths.size());
   if (names_in_order.twins)
-    throw InputError(fmt::format("{}: has the same number as {}; a sequence has one file per number",
-                                 files.paths[names_in_order.twins->second].string(),
-                                 files.paths[names_in_order.twins->first].string()));
+    throw InputError(fmt::format(
+        "{}: has the same number as {}; a sequence has one file per number: list the "
+        "files that count",
+        files.paths[names_in_order.twins->second].string(), files.paths[names_in_order.twins->first].string()));
   const Paths paths = std::move(files.paths);
   files.paths.clear();
   for (const std::size_t k : names_in_order.order) files.paths.push_back(paths[k]);

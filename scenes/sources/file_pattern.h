@@ -18,6 +18,7 @@ struct NumberedFiles {
   bool look_like_times = false;    ///< They have decimals or exponents.
   std::vector<std::string> notes;  ///< How the names were read, where there is doubt; one sentence each.
   std::string missing;             ///< In words, such as "3 files are missing (after f_2.ply)"; empty where none is.
+  std::string uneven;              ///< In words: that the numbers only give the order; empty where they count steps.
 };
 
 /// The files of all names, each of which is a file, a folder (all particle files in it, or the one in each of its

@@ -14,6 +14,8 @@ namespace {
 
 /// Numbers with more places missing than this many per number are no frame numbers, unless most are neighbours.
 constexpr std::uint64_t most_steps_per_number = 4;
+/// The same where most are neighbours: more is a date, or a number of another kind.
+constexpr std::uint64_t most_steps_per_neighbor = 30;
 /// Of a stride, by which decimals may be off an even raster: names hold them rounded.
 constexpr double raster_tolerance = 1e-3;
 /// Of a whole number that can be counted with.
@@ -345,8 +347,9 @@ Raster raster_of(const NameOrder& names) {
     raster.missing += gap - 1;
   }
   raster.stride = stride;
+  const bool most_are_neighbors = 2 * neighbors >= numbers.size() - 1;
   raster.is_regular =
-      2 * neighbors >= numbers.size() - 1 || raster.steps.back() <= most_steps_per_number * numbers.size();
+      raster.steps.back() <= (most_are_neighbors ? most_steps_per_neighbor : most_steps_per_number) * numbers.size();
   return raster;
 }
 

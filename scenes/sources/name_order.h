@@ -35,7 +35,7 @@ struct Raster {
   std::vector<std::uint64_t> steps;  ///< Of each number, in strides from the first.
   std::uint64_t missing = 0;         ///< Places of the raster that no number takes.
   std::size_t before_gap = 0;        ///< Index of the last number before the first of them.
-  bool is_regular = false;           ///< Most neighbours are one stride apart, or few places are missing.
+  bool is_regular = false;           ///< Few places are missing for so many numbers.
 };
 Raster raster_of(const NameOrder& names);
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/bounds.h"
 #include "common/errors.h"
 #include "common/number_text.h"
 #include "scenes/io/json_particles.h"
@@ -19,6 +20,7 @@
 #include "scenes/sources/file_pattern.h"
 #include "scenes/sources/name_order.h"
 #include "scenes/sources/particle_spacing.h"
+#include "scenes/sources/step_times.h"
 
 namespace flowskin::scenes {
 namespace {
@@ -38,9 +40,8 @@ ParticleNeeds needs_of(const RecordedSpec& spec) {
   needs.ids = spec.ids == RecordedSpec::Ids::automatic;
   needs.keep = spec.keep;
   if (!spec.region.empty()) {
-    if (spec.region.size() != 2 || ((spec.region[1] - spec.region[0]).array() < 0).any())
-      throw InputError("particles.recorded.region: expected two corners, the lower one first");
-    needs.region = sph::Box{spec.region[0], spec.region[1]};
+    if (spec.region.size() != 2) throw InputError("particles.recorded.region: expected two corners");
+    needs.region = sph::Box{spec.region[0].cwiseMin(spec.region[1]), spec.region[0].cwiseMax(spec.region[1])};
   }
   needs.skip_invalid = spec.skip_invalid;
   needs.skip_duplicates = spec.skip_duplicates;
@@ -62,7 +63,8 @@ Entries entries_of_collection(const std::filesystem::path& file) {
 
 /// What a look at each file tells.
 struct Census {
-  std::vector<double> times;  // empty where some file tells none
+  std::vector<double> times;         // empty where some file tells none
+  std::vector<std::int64_t> counts;  // numbers of time steps; the same
   bool same_count = true;
 };
 
@@ -79,9 +81,11 @@ class SequenceOpener {
     const std::vector<ParticleTable>& steps = sequence_.tables->steps(sequence_.places.front().file);
     const std::vector<std::string>& notes = steps.front().notes;
     sequence_.notes.insert(sequence_.notes.end(), notes.begin(), notes.end());
-    if (steps.size() > 1) take_steps();
+    const bool has_many_steps = steps.size() > 1;
+    if (has_many_steps) take_steps();
     const ParticleTable table = sequence_.tables->table(sequence_.places.front());
     sequence_.first = particles_of_file(table, sequence_.places.front().name(), sequence_.needs);
+    refuse_if_none_is_left();
     if (sequence_.places.size() == 1)
       sequence_.notes.push_back(fmt::format(
           "a single frame: its surface is made, {}",
@@ -89,10 +93,19 @@ class SequenceOpener {
     const bool wants_times = file_times_.empty() && spec_.frame_interval == 0 && table.time.has_value();
     const bool wants_ids =
         sequence_.places.size() > 1 && spec_.ids == RecordedSpec::Ids::automatic && !sequence_.first.has_ids;
-    const Census census = wants_times || wants_ids ? look_at_all(whole_count(table)) : Census{};
+    const bool wants_counts =
+        sequence_.places.size() > 1 && file_times_.empty() && !has_many_steps && table.step.has_value();
+    const Census census = wants_times || wants_ids || wants_counts ? look_at_all(whole_count(table)) : Census{};
+    if (wants_counts) count_steps_in_files(census.counts);
+    tell_of_names();
     settle_times(wants_times ? census.times : std::vector<double>{}, table.time.has_value());
     settle_ids(census);
     return std::move(sequence_);
+  }
+
+  std::vector<FrameTables::Place> places() {
+    if (!take_collection()) take_files();
+    return std::move(sequence_.places);
   }
 
   std::vector<std::filesystem::path> files() {
@@ -108,6 +121,34 @@ class SequenceOpener {
   }
 
  private:
+  /// @throws InputError where the options leave out every particle of every file; it names those that do.
+  void refuse_if_none_is_left() const {
+    const ParticleNeeds& needs = sequence_.needs;
+    if (sequence_.first.left_out.all() == 0 || !sequence_.first.state.ids.empty()) return;
+    LeftOut left_out = sequence_.first.left_out;
+    for (std::size_t k = 1; k < sequence_.places.size(); ++k) {
+      const FrameTables::Place& place = sequence_.places[k];
+      const ParticleFile file = particles_from_table(sequence_.tables->table(place), place.name(), needs);
+      if (!file.state.ids.empty()) return;
+      left_out += file.left_out;
+    }
+    const ParticleFile all =
+        particles_from_table(sequence_.tables->table(sequence_.places.front()), sequence_.places.front().name(),
+                             {.ids = false, .skip_invalid = true});
+    std::string where;
+    if (needs.region && !all.state.positions.empty()) {
+      const Box box = bounds(all.state.positions);
+      where =
+          fmt::format(". Those of the first file lie between ({:.4g}, {:.4g}, {:.4g}) and ({:.4g}, {:.4g}, {:.4g}) m",
+                      box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z());
+    }
+    const std::size_t others = sequence_.places.size() - 1;
+    throw InputError(
+        fmt::format("{}: no particle is left{}; left out of {}: {}{}", sequence_.places.front().name(),
+                    others > 0 ? fmt::format(" in this and {} other frame{}", others, others == 1 ? "" : "s") : "",
+                    left_out.all(), left_out_text(left_out), where));
+  }
+
   /// A single .pvd or .vtk.series names the files and their times. Files of one time are parts of one frame.
   bool take_collection() {
     if (spec_.files.size() != 1) return false;
@@ -135,40 +176,42 @@ class SequenceOpener {
                                    sequence_.places.front().file.string(),
                                    sequence_.tables->steps(sequence_.places.front().file).size()));
     const std::vector<FrameTables::Place> files = std::exchange(sequence_.places, {});
-    NameOrder counted;
+    std::vector<std::int64_t> counts;
     for (const FrameTables::Place& place : files) {
       const std::vector<ParticleTable>& steps = sequence_.tables->steps(place.file);
       for (std::size_t k = 0; k < steps.size(); ++k) {
         sequence_.places.push_back({place.file, {}, k, false});
-        if (steps[k].step) counted.counts.push_back(static_cast<std::int64_t>(*steps[k].step));
+        if (steps[k].step) counts.push_back(static_cast<std::int64_t>(*steps[k].step));
       }
     }
     sequence_.notes.push_back(
         fmt::format("{} time steps in {} file{}", sequence_.places.size(), files.size(), files.size() == 1 ? "" : "s"));
     numbers_.clear();
+    files_are_uneven_.clear();
+    files_are_missing_.clear();
     steps_.resize(sequence_.places.size());
-    std::iota(steps_.begin(), steps_.end(), std::uint64_t{0});
-    if (counted.counts.size() == sequence_.places.size()) count_time_steps(counted);
+    std::iota(steps_.begin(), steps_.end(), 0.0);
+    if (counts.size() == sequence_.places.size()) count_time_steps(counts);
   }
 
   /// Gaps between the numbers of time steps are gaps in time.
-  void count_time_steps(NameOrder& counted) {
-    const auto& counts = counted.counts;
-    if (std::adjacent_find(counts.begin(), counts.end(), std::greater_equal<>()) != counts.end()) {
-      sequence_.warnings.push_back(fmt::format(
-          "{}: the numbers of the time steps do not ascend; they are played in the order in which they stand",
-          sequence_.places.front().file.string()));
+  void count_time_steps(const std::vector<std::int64_t>& counts) {
+    const StepTimes by_number = times_of_steps(counts, sequence_.places.front().file.string());
+    if (!by_number.warning.empty()) sequence_.warnings.push_back(by_number.warning);
+    if (by_number.places.empty()) return;
+    steps_ = by_number.places;
+    step_unit_ = by_number.unit;
+    sequence_.is_even = by_number.are_even;
+  }
+
+  /// The same of files of one step each, whose names say less.
+  void count_steps_in_files(const std::vector<std::int64_t>& counts) {
+    if (counts.size() != sequence_.places.size() ||
+        std::adjacent_find(counts.begin(), counts.end(), std::greater_equal<>()) != counts.end())
       return;
-    }
-    counted.numbers.assign(counts.begin(), counts.end());
-    const Raster raster = raster_of(counted);
-    if (!raster.is_regular || raster.stride == 0) return;
-    steps_ = raster.steps;
-    if (raster.missing > 0)
-      sequence_.warnings.push_back(
-          fmt::format("{} of {} time steps are missing by their numbers: the time goes on across "
-                      "the gaps, particles are interpolated",
-                      raster.missing, raster.steps.back() + 1));
+    files_are_uneven_.clear();
+    files_are_missing_.clear();
+    count_time_steps(counts);
   }
 
   void take_files() {
@@ -178,10 +221,17 @@ class SequenceOpener {
     if (spec_.times_in_names) file_times_ = times_from_names(files);
     if (files.look_like_times) numbers_ = files.numbers;
     for (std::filesystem::path& path : files.paths) sequence_.places.push_back({std::move(path), {}, 0, true});
-    steps_ = std::move(files.steps);
+    steps_.assign(files.steps.begin(), files.steps.end());
     sequence_.notes.insert(sequence_.notes.end(), files.notes.begin(), files.notes.end());
-    if (!files.missing.empty())
-      sequence_.warnings.push_back(files.missing + ": the time goes on across the gaps, particles are interpolated");
+    files_are_uneven_ = std::move(files.uneven);
+    files_are_missing_ = std::move(files.missing);
+  }
+
+  void tell_of_names() {
+    if (!files_are_uneven_.empty()) sequence_.notes.push_back(files_are_uneven_);
+    if (!files_are_missing_.empty())
+      sequence_.warnings.push_back(files_are_missing_ +
+                                   ": the time goes on across the gaps, particles are interpolated");
   }
 
   static std::vector<double> times_from_names(const NumberedFiles& files) {
@@ -210,6 +260,7 @@ class SequenceOpener {
       census.same_count = census.same_count && here == count;
       all_have_times = all_have_times && table.time && std::isfinite(*table.time);
       if (all_have_times) census.times.push_back(*table.time);
+      if (table.step) census.counts.push_back(static_cast<std::int64_t>(*table.step));
     }
     if (!all_have_times) census.times.clear();
     return census;
@@ -218,11 +269,13 @@ class SequenceOpener {
   void settle_times(const std::vector<double>& times_in_files, bool first_has_time) {
     const bool ascending = std::adjacent_find(times_in_files.begin(), times_in_files.end(), std::greater_equal<>()) ==
                            times_in_files.end();
+    if (spec_.frame_interval > 0 && step_unit_ > 1 && sequence_.is_even)
+      sequence_.notes.push_back(fmt::format("{:g} time steps are {:.4g} s", step_unit_, spec_.frame_interval));
     if (spec_.frame_interval > 0 && (file_times_.empty() || sequence_.places.size() == 1)) {
       by_steps(spec_.frame_interval);
     } else if (spec_.frame_interval > 0) {
       steps_.clear();
-      for (std::size_t k = 0; k < file_times_.size(); ++k) steps_.push_back(k);
+      for (std::size_t k = 0; k < file_times_.size(); ++k) steps_.push_back(static_cast<double>(k));
       by_steps(spec_.frame_interval);
     } else if (!file_times_.empty()) {
       by_times(file_times_);
@@ -232,8 +285,9 @@ class SequenceOpener {
       by_steps(default_interval);
       if (sequence_.places.size() > 1)
         sequence_.notes.push_back(
-            fmt::format("{}: 1/30 s between files is assumed; --frame-rate or --time-step sets it",
-                        first_has_time ? "the times in the files do not ascend" : "the files give no times"));
+            fmt::format("{}: 1/30 s {} is assumed; --frame-rate or --time-step sets it",
+                        first_has_time ? "the times in the files do not ascend" : "the files give no times",
+                        step_unit_ > 0 ? fmt::format("for {:g} time steps", step_unit_) : "between files"));
       if (!numbers_.empty())
         sequence_.notes.push_back(fmt::format(
             "the numbers in the names, {} to {}, look like times in seconds: --times-in-names plays them so",
@@ -244,7 +298,12 @@ class SequenceOpener {
   void by_steps(double interval) {
     if (steps_.empty()) steps_.assign(1, 0);
     sequence_.interval = interval;
-    for (const std::uint64_t step : steps_) sequence_.times.push_back(static_cast<double>(step) * interval);
+    for (const double step : steps_) sequence_.times.push_back(step * interval);
+    if (!sequence_.is_even)
+      sequence_.notes.push_back(fmt::format(
+          "the time steps are unevenly numbered: times are in proportion to the numbers, {:g} time steps are {:.4g} s, "
+          "and frames are interpolated",
+          step_unit_, interval));
   }
 
   void by_times(const std::vector<double>& times) {
@@ -262,6 +321,7 @@ class SequenceOpener {
     if (std::round(rate) >= 1 && std::abs(rate - std::round(rate)) < whole_rate_tolerance * rate)
       interval = 1 / std::round(rate);
     sequence_.interval = interval;
+    sequence_.is_even = true;
     std::vector<std::uint64_t> steps;
     for (const double time : times) {
       const double step = (time - times.front()) / interval;
@@ -272,7 +332,7 @@ class SequenceOpener {
     }
     sequence_.is_even = sequence_.is_even && std::adjacent_find(steps.begin(), steps.end()) == steps.end();
     if (sequence_.is_even) {
-      steps_ = steps;
+      steps_.assign(steps.begin(), steps.end());
       by_steps(interval);
       if (steps.back() + 1 > steps.size())
         sequence_.warnings.push_back(
@@ -329,9 +389,11 @@ class SequenceOpener {
 
   const RecordedSpec& spec_;
   const std::string& directory_;
-  std::vector<double> file_times_;    // of a collection, or in the names
-  std::vector<double> numbers_;       // in the names, where they look like times
-  std::vector<std::uint64_t> steps_;  // by the numbers
+  std::vector<double> file_times_;  // of a collection, or in the names
+  std::vector<double> numbers_;     // in the names, where they look like times
+  std::vector<double> steps_;       // by the numbers, in intervals
+  double step_unit_ = 0;            // how many time steps of the solver an interval has, where they are numbered
+  std::string files_are_uneven_, files_are_missing_;  // by their names, in words
   ParticleSequence sequence_;
 };
 
@@ -352,6 +414,10 @@ ParticleSequence open_sequence(const RecordedSpec& spec, const std::string& dire
 
 std::vector<std::filesystem::path> sequence_files(const RecordedSpec& spec, const std::string& directory) {
   return SequenceOpener(spec, directory).files();
+}
+
+std::vector<FrameTables::Place> sequence_places(const RecordedSpec& spec, const std::string& directory) {
+  return SequenceOpener(spec, directory).places();
 }
 
 ParticleFile read_sequence_file(const ParticleSequence& sequence, std::size_t k) {

@@ -36,6 +36,9 @@ ParticleSequence open_sequence(const RecordedSpec& spec, const std::string& dire
 /// @throws InputError where there are none.
 std::vector<std::filesystem::path> sequence_files(const RecordedSpec& spec, const std::string& directory);
 
+/// The same, frame by frame: files of one time are parts of one frame.
+std::vector<FrameTables::Place> sequence_places(const RecordedSpec& spec, const std::string& directory);
+
 /// Whether a file names others and their times: a .pvd or .vtk.series, whatever it is called.
 bool is_collection(const std::filesystem::path& file);
 

@@ -297,7 +297,7 @@ void RecordedSource::read_into_cache(std::size_t k) {
   left_out_[k] = file.left_out;
   ParticleState state = std::move(file.state);
   if (sequence_.ids != ParticleSequence::Ids::of_files) std::iota(state.ids.begin(), state.ids.end(), 0);
-  left_out_[k].unwanted += leave_out_strays(state, spacing_);
+  left_out_[k].stray += leave_out_strays(state, spacing_);
   settle_rest_positions(k, state);
   cache_[k] = std::move(state);
   if (!checksums_.contains(k)) checksums_[k] = checksum_of_place(sequence_.places[k], *sequence_.tables);
@@ -454,13 +454,10 @@ SourceStatistics RecordedSource::statistics() const {
   const auto next = left_out_.upper_bound(nearest_file());
   if (next == left_out_.begin()) return statistics;
   const LeftOut& left_out = std::prev(next)->second;
-  statistics.not_wanted = left_out.unwanted;
+  statistics.not_wanted = left_out.unwanted();
   statistics.skipped_invalid = left_out.invalid;
   statistics.skipped_duplicates = left_out.duplicate;
-  if (left_out.unwanted + left_out.invalid + left_out.duplicate > 0)
-    statistics.summary +=
-        fmt::format("; left out of the file at hand: {} not wanted or too far out, {} invalid, {} duplicate",
-                    left_out.unwanted, left_out.invalid, left_out.duplicate);
+  if (left_out.all() > 0) statistics.summary += "; left out of the file at hand: " + left_out_text(left_out);
   return statistics;
 }
 

@@ -100,6 +100,27 @@ TEST_F(ProgramErrors, InfoGoesOnAfterABadFile) {
     EXPECT_NE(result.output.find(word), std::string::npos) << word << "\n" << result.output;
 }
 
+TEST_F(ProgramErrors, ControlCharactersOfFilesDoNotReachTheTerminal) {
+  const auto result = run_flowskin({"info", write("a\x1b[31m.csv", "id,x,y,z\n0,0,0,0\n1,\x1b[2J\x07red,0,0\n")});
+  expect(result, 2, {"a\\x1b[31m.csv", "found \"\\x1b[2J\\x07red\""});
+  EXPECT_EQ(result.output.find('\x1b'), std::string::npos) << result.output;
+}
+
+TEST_F(ProgramErrors, JsonThatIsNeitherASceneNorParticles) {
+  expect(run_flowskin({"info", write("empty.json", "{}")}), 2, {"empty.json", "neither a scene nor particles"});
+  expect(run_flowskin({"info", write("slip.json", R"({"partikles": 1})")}), 2, {"did you mean \"particles\"?"});
+  expect(run_flowskin({"track", (folder_ / "empty.json").string()}), 2, {"the object is empty", "positions"});
+}
+
+/// There is nothing to go on with where a whole run found no surface.
+TEST_F(ProgramErrors, NoSurfaceAtAll) {
+  const std::string file = write("a.csv", "x,y,z\n0,0,0\n1,0,0\n2,0,0\n");
+  const auto result = run_flowskin({"track", file, "--out", (folder_ / "out").string(), "--no-pictures", "--quiet"});
+  expect(result, 1, {"no frame has a surface", "3 particles at most"});
+  EXPECT_EQ(result.output.find("--resume"), std::string::npos) << result.output;
+  EXPECT_EQ(result.output.find("are whole"), std::string::npos) << result.output;
+}
+
 TEST_F(ProgramErrors, InterruptionKeepsWholeFrames) {
   const fs::path out = folder_ / "run";
   const pid_t child = fork();

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -162,6 +163,72 @@ TEST(AnyonesFiles, ThatCannotBeReadAreNamed) {
   EXPECT_EQ(unreadable_format("x,y,z\n"), "");
 }
 
+std::string binary(const std::string& start, std::size_t size = 400) { return start + std::string(size, '\0'); }
+
+TEST(AnyonesFiles, ThatCannotBeReadAreNamedByTheirContent) {
+  const std::string stl_head = "made by x" + std::string(71, ' ') + std::string("\2\0\0\0", 4);
+  const std::string gro = "Water, t= 0.0\n    1\n    1SOL     OW    1   0.230   0.628   0.113\n   1.86 1.86 1.86\n";
+  const std::string atom = "ATOM      1  N   ALA A   1      11.104   6.134  -6.504  1.00  0.00           N\n";
+  const std::vector<std::array<std::string, 2>> files{
+      {binary("scb1"), "gconvert"},
+      {binary("\xc0PRT\r\n\x1a\n"), "partconvert"},
+      {binary("#File JPartDataBi4"), "PartVTK"},
+      {"<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\"><Domain/></Xdmf>", "HDF5 file itself"},
+      {gro, "GROMACS"},
+      {"solid a\n facet normal 0 0 1\n outer loop\n vertex 0 0 0\n", "STL"},
+      {stl_head + std::string(100, '\0'), "STL"},
+      {"HEADER    A\n" + atom, "protein"},
+      {atom, "protein"},
+      {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mesh (OBJ)"},
+      {binary("PAR1"), "read_parquet"},
+      {binary("CDF\x01"), "netCDF4"},
+      {binary("LASF"), "pdal"},
+      {"{\"x\": 1}\n{\"x\": 2}\n", "jq -s"},
+      {"[0,0,0]\r\n[1,0,0]\r\n", "jq -s"},
+      {"# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nPOINTS 1\nDATA ascii\n0 0 0\n", "pcl_pcd2ply"},
+      {"VERSION 0.7\nFIELDS x y z\nPOINTS 1\nDATA binary\n" + std::string(12, '\0'), "pcl_pcd2ply"},
+      {"PK\x03\x04 a.usdc", "USD"},
+      {"7z\xbc\xaf\x27\x1c", "7z x"},
+      {"\x89PNG\r\n", "picture"},
+      {"%PDF-1.4", "PDF"},
+      {"<!DOCTYPE html><html>", "web page"},
+      {"LAMMPS data file\n\n1 atoms\n\n0 1 xlo xhi\n", "write_dump"},
+      {"<VTKFile type=\"vtkMultiBlockDataSet\"/>", "Merge Blocks"}};
+  for (const auto& [bytes, word] : files)
+    EXPECT_THAT(message_of<InputError>([&] { parse_particle_steps(bytes, "a"); }),
+                AllOf(HasSubstr("cannot be read, this is"), HasSubstr(word)));
+}
+
+TEST(AnyonesFiles, ThatCannotBeReadAreNamedByTheirEndingsAtLast) {
+  const auto error = [](const std::string& bytes, const std::string& name) {
+    return message_of<InputError>([&] { parse_particle_steps(bytes, name); });
+  };
+  EXPECT_THAT(error(binary("?"), "Part_0001.bi4"), HasSubstr("PartVTK"));
+  EXPECT_THAT(error(binary("?"), "a.XTC"), HasSubstr("OVITO"));
+  EXPECT_THAT(error(binary("?"), "a.unknown"), HasSubstr("docs/track.md"));
+  EXPECT_EQ(parse_particle_table("x,y,z\n0,0,0\n", "a.pdb").count, 1U) << "the content decides";
+  EXPECT_EQ(parse_particle_table("v 0 0 0\nv 1 0 0\n", "a.obj").count, 2U) << "points only";
+}
+
+TEST(AnyonesFiles, OfNumbersOfHalfPrecisionAreRead) {
+  const auto npy = [](const std::string& type, const std::string& numbers) {
+    std::string head = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (1, 3), }";
+    return std::string("\x93NUMPY\1\0", 8) + static_cast<char>(head.size()) + '\0' + head + numbers;
+  };
+  // 1.5, -2^-24 (the smallest there is), 65504 (the largest) [IEEE 754].
+  const ParticleTable table = parse_particle_table(npy("<f2", std::string("\x00\x3e\x01\x80\xff\x7b", 6)), "a");
+  EXPECT_EQ(table.columns.at("x")[0], 1.5);
+  EXPECT_EQ(table.columns.at("y")[0], -std::ldexp(1, -24));
+  EXPECT_EQ(table.columns.at("z")[0], 65504);
+  const auto error = [&](const std::string& type) {
+    return message_of<InputError>([&] { parse_particle_table(npy(type, std::string(100, '\0')), "a"); });
+  };
+  EXPECT_THAT(error("<c16"), HasSubstr("complex numbers"));
+  EXPECT_THAT(error("<f16"), HasSubstr("astype(float)"));
+  EXPECT_THAT(error("|O"), HasSubstr("pickled"));
+  EXPECT_THAT(error("<U3"), HasSubstr("words"));
+}
+
 TEST(AnyonesFiles, CutShortAreErrorsOrLoseOnlyTheEnd) {
   for (const ExpectedFile& expected : expected_files) {
     if (std::string(expected.name) == "pieces.pvtp") continue;
@@ -258,6 +325,21 @@ TEST_F(IoTest, ACollectionOfWindowsNamesItsFiles) {
   const ParticleSequence sequence = open_sequence(spec, "/");
   EXPECT_THAT(sequence.times, ElementsAre(0, 0.25));
   for (const std::size_t k : {0, 1}) expect_particles(read_sequence_file(sequence, k), k, {"a.pvd", 2, true, true});
+}
+
+/// Files that have been moved are found beside the collection, with as many of their folders as are there.
+TEST_F(IoTest, ACollectionFromAnotherComputerNamesItsFiles) {
+  std::filesystem::create_directory(path("data"));
+  std::filesystem::copy(data_file("step_0.vtp"), path("data/step_0.vtp"));
+  std::filesystem::copy(data_file("step_1.vtp"), path("step_1.vtp"));
+  RecordedSpec spec;
+  spec.files = {write_text("a.pvd",
+                           "<VTKFile type=\"Collection\"><Collection>"
+                           "<DataSet timestep=\"0\" file=\"C:\\sim\\run 1\\data\\step_0.vtp\"/>"
+                           "<DataSet timestep=\"1\" file=\"/home/else/step_1.vtp\"/></Collection></VTKFile>")};
+  const ParticleSequence sequence = open_sequence(spec, "/");
+  EXPECT_EQ(sequence.places[0].file, path("data/step_0.vtp"));
+  EXPECT_EQ(sequence.places[1].file, path("step_1.vtp"));
 }
 
 /// A run over the steps of one file is saved in the middle and goes on; another file is refused.

@@ -84,12 +84,27 @@ TEST_F(FileInfoTest, GoesByTheContent) {
   const std::filesystem::path data = std::filesystem::path(FLOWSKIN_SOURCE_DIR) / "tests/scenes/data/anyone";
   EXPECT_NE(joined(describe_file(data / "plain.dump")).find("time steps: 3, numbered 0 to 200"), std::string::npos);
   EXPECT_NE(joined(describe_file(data / "steps.h5part")).find("time steps: 3, 0 to 0.5 s"), std::string::npos);
-  EXPECT_NE(joined(describe_sequence(data / "parts.pvd")).find("sequence: 4 files"), std::string::npos);
+  const std::string parts = joined(describe_sequence(data / "parts.pvd"));
+  EXPECT_NE(parts.find("sequence: 4 files for 3 times"), std::string::npos) << parts;
+  EXPECT_NE(parts.find("particles: 8 (VTK"), std::string::npos) << parts;
   std::filesystem::copy(data / "series.vtk.series", path("series"));
   std::filesystem::copy(data / "step_0.vtp", path("step_0.vtp"));
   const FileInfo broken = describe_sequence(path("series"));
   EXPECT_FALSE(broken.sound);
   EXPECT_NE(joined(broken).find("missing: " + path("step_2.vtp").string()), std::string::npos) << joined(broken);
+}
+
+TEST_F(FileInfoTest, FoldersNamedByTimeAreToldByTheirNames) {
+  for (const char* time : {"0", "0.1", "0.2"}) {
+    std::filesystem::create_directories(path(time));
+    write_text(std::string(time) + "/p.csv", "x,y,z\n0,0,0\n");
+  }
+  const std::string text = joined(describe_sequence(path("")));
+  EXPECT_NE(text.find("sequence: 3 files, 0/p.csv to 0.2/p.csv"), std::string::npos) << text;
+  std::filesystem::create_directories(path("0.10"));
+  write_text("0.10/p.csv", "x,y,z\n0,0,0\n");
+  EXPECT_NE(message_of<InputError>([&] { describe_sequence(path("")); }).find("list the files that count"),
+            std::string::npos);
 }
 
 TEST_F(FileInfoTest, SaysWhatCannotBeRead) {

@@ -127,18 +127,32 @@ TEST(OddTables, ParticlesAreChosenByColumnsPlaceAndValidity) {
   EXPECT_EQ(keep("x >= 1 && (x < 2 || !(x != 3))"), (Ids{2, 5}));
   EXPECT_EQ(keep("not X >= 1"), (Ids{1})) << "a place that is none is invalid";
   EXPECT_EQ(keep("'Point Data' > 6.5 and point_data<9"), (Ids{3}));
+  EXPECT_EQ(keep("2 == id"), (Ids{2}));
+  EXPECT_EQ(keep("0.5 < x <= 2"), (Ids{2, 3}));
+  EXPECT_EQ(keep("-1 < y < x < 2.5"), (Ids{2, 3}));
   ParticleNeeds bad;
-  for (const char* wrong :
-       {"Type", "Type ==", "Type == 1 x", "(Type == 1", "Typ == 1", "== 1", "Type == one", "Type == 1 and"}) {
+  for (const std::string wrong : {"Type", "Type ==", "Type == 1 x", "(Type == 1", "Typ == 1", "== 1", "Type == one",
+                                  "Type == 1 and", "1 == 1", "x < nan", "x < 1 <", "2x < 1", "x == y + 1", " "}) {
     bad.keep = wrong;
     EXPECT_THAT(error_of(text, bad), HasSubstr("--keep '")) << wrong;
+  }
+  const std::size_t many = 30000;
+  for (const std::string& deep : {std::string(many, '(') + "x < 1" + std::string(many, ')'), [&] {
+                                    std::string text_of_nots;
+                                    for (std::size_t k = 0; k < many; ++k) text_of_nots += "not ";
+                                    return text_of_nots + "x < 1";
+                                  }()}) {
+    bad.keep = deep;
+    const std::string message = error_of(text, bad);
+    EXPECT_THAT(message, HasSubstr("more than 50 levels"));
+    EXPECT_LT(message.size(), 300U);
   }
   bad.keep = "Type == 1";
   EXPECT_THAT(error_of(text, bad), AllOf(HasSubstr("line 6"), HasSubstr("Type")));
   ParticleNeeds region = valid;
   region.region = sph::Box{{0.5, -1, -1}, {2, 1, 1}};
   EXPECT_EQ(kept(region), (Ids{2, 3}));
-  EXPECT_EQ(parsed(text, region).left_out.unwanted, 2U);
+  EXPECT_EQ(parsed(text, region).left_out.by_region, 2U);
   ParticleNeeds once;
   once.skip_duplicates = true;
   const ParticleFile file = parsed("id,x,y,z\n3,0,0,0\n1,1,0,0\n3,2,0,0\n4,1,0,0\n", once);

@@ -263,7 +263,7 @@ TEST_F(RecordedSourceTest, GapsInTheNumbersAreMissingFiles) {
   const NumberedFiles steps = files_of_patterns({(folder_ / "step_*.csv").string()});
   EXPECT_EQ(steps.steps, (std::vector<std::uint64_t>{0, 1, 2}));
   EXPECT_EQ(steps.missing, "");
-  EXPECT_THAT(steps.notes, ElementsAre(HasSubstr("1033, 2071, 3110")));
+  EXPECT_THAT(steps.uneven, HasSubstr("1033, 2071, 3110"));
 }
 
 TEST_F(RecordedSourceTest, FilesWithoutEndsAndOneFolderATime) {
@@ -517,6 +517,23 @@ TEST_F(RecordedSourceTest, AParticleThatFlewOffIsLeftOutWhereNoGridReachesIt) {
   source->advance_to(0.5);
   EXPECT_EQ(source->state().ids.size(), 61U);
   EXPECT_EQ(source->statistics().not_wanted, 1U);
+}
+
+TEST_F(RecordedSourceTest, OptionsThatLeaveNoParticleAreNamed) {
+  for (const char* name : {"f_0.ply", "f_1.ply"}) write(name, {{1, {0, 0, 0}}, {2, {1, 2, 3}}}, with_ids);
+  RecordedSpec spec;
+  spec.files = {"f_*.ply"};
+  spec.keep = "x > 0.5";
+  spec.region = {{9, 9, 9}, {8, 8, 8}};
+  const auto opened = [&] { return error_of([&] { open_sequence(spec, folder_.string()); }); };
+  EXPECT_THAT(opened(), AllOf(HasSubstr("no particle is left in this and 1 other frame; "),
+                              HasSubstr("left out of 4: 2 by --keep, 2 by --region"),
+                              HasSubstr("between (0, 0, 0) and (1, 2, 3) m")));
+  spec.region = {{2, 2, 9}, {-1, 1, 2}};  // corners in any order
+  EXPECT_EQ(opened(), "no error");
+  spec.region.clear();
+  spec.keep = "x > 1 and f_1 == 0 or x == 7";
+  EXPECT_THAT(opened(), HasSubstr("there is no column \"f_1\""));
 }
 
 TEST_F(RecordedSourceTest, VelocitiesThatContradictTheMotionAreWarnedOf) {

@@ -117,7 +117,7 @@ int run_chosen(int argc, const char* const* argv) {
     std::ostringstream help, complaint;
     const int status = app.exit(error, help, complaint);
     put(help.str());
-    say(complaint.str());
+    say(printable(complaint.str()));
     return status == 0 ? kDone : kInputWrong;
   }
   const auto chosen = std::find_if(added.begin(), added.end(), [](const CLI::App* one) { return one->parsed(); });

@@ -77,8 +77,15 @@ scenes::FileInfo describe(const std::filesystem::path& place) {
   const std::string start = scenes::first_bytes(place, telling);
   const std::size_t first = start.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   const bool is_json = place.extension() == ".json" || (first != std::string::npos && start[first] == '{');
-  return is_json && !scenes::is_json_particles(scenes::read_bytes(place)) ? describe_scene(place)
-                                                                          : scenes::describe_file(place);
+  if (!is_json) return scenes::describe_file(place);
+  const std::string text = scenes::read_bytes(place);
+  if (scenes::is_json_particles(text)) return scenes::describe_file(place);
+  if (!scenes::is_like_scene(text))
+    throw InputError(
+        fmt::format("{}: this JSON file is neither a scene nor particles: a scene has keys such as \"particles\" and "
+                    "\"bodies\" (`flowskin scene --keys`), particles have \"positions\", or \"x\", \"y\" and \"z\"",
+                    place.string()));
+  return describe_scene(place);
 }
 
 /// Goes on after a file that cannot be read.

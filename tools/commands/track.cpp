@@ -33,8 +33,8 @@ struct TrackOptions {
   std::optional<double> spacing, radius, edge_length, tile_size;
   std::optional<double> frame_rate, time_step;  ///< files per second, s between files
   bool no_ids = false, times_in_names = false;
-  std::string keep;            ///< expression of columns; empty: all
-  std::vector<double> region;  ///< two corners (m); empty: all
+  std::optional<std::string> keep;  ///< expression of columns
+  std::vector<double> region;       ///< two corners (m); empty: all
   bool skip_invalid = false, skip_duplicates = false;
   bool list = false;             ///< only say which files are read, in which order and at which times
   std::string texture, mapping;  ///< empty: the scene file's defaults
@@ -171,6 +171,18 @@ void set_pictures(const TrackOptions& options, const ParticleSequence& sequence,
   if (!places.empty()) scene.render.camera = place_camera(scene.render.camera, aspect, places);
 }
 
+/// Infinite numbers stand for no bound.
+std::vector<Vec3> corners(std::vector<double> numbers) {
+  constexpr double kNoBound = 1e9;  // m, as far as particles may be
+  for (double& number : numbers) {
+    if (std::isnan(number))
+      throw InputError("--region: nan is no coordinate; expected XMIN YMIN ZMIN XMAX YMAX ZMAX (m)");
+    if (std::isinf(number)) number = std::copysign(kNoBound, number);
+  }
+  const Vec3 a(numbers[0], numbers[1], numbers[2]), b(numbers[3], numbers[4], numbers[5]);
+  return {a.cwiseMin(b), a.cwiseMax(b)};
+}
+
 /// The part of the scene that says which files are played, and how.
 scenes::RecordedSpec recorded_spec(const TrackOptions& options) {
   scenes::RecordedSpec spec;
@@ -178,10 +190,10 @@ scenes::RecordedSpec recorded_spec(const TrackOptions& options) {
   if (options.time_step) spec.frame_interval = *options.time_step;
   if (options.frame_rate) spec.frame_interval = 1 / *options.frame_rate;
   spec.times_in_names = options.times_in_names;
-  spec.keep = options.keep;
-  if (!options.region.empty())
-    spec.region = {Vec3(options.region[0], options.region[1], options.region[2]),
-                   Vec3(options.region[3], options.region[4], options.region[5])};
+  if (options.keep) spec.keep = *options.keep;
+  if (options.keep && options.keep->find_first_not_of(" \t\r\n") == std::string::npos)
+    throw InputError("--keep is empty; expected what particles are to fulfil, such as 'Type == 1 and z > 0.5'");
+  if (!options.region.empty()) spec.region = corners(options.region);
   spec.skip_invalid = options.skip_invalid;
   spec.skip_duplicates = options.skip_duplicates;
   if (options.no_ids) spec.ids = scenes::RecordedSpec::Ids::none;
@@ -233,7 +245,9 @@ int list_files(const ParticleSequence& sequence) {
   for (const std::string& warning : sequence.warnings) warn(warning);
   for (const std::string& note : sequence.notes) say_line(note);
   for (std::size_t k = 0; k < sequence.places.size(); ++k)
-    put(fmt::format("{}  {:.9g} s  {}\n", k, sequence.times[k], sequence.places[k].name()));
+    put(fmt::format(
+        "{}  {:.9g} s  {}{}\n", k, sequence.times[k], sequence.places[k].name(),
+        sequence.places[k].more.empty() ? "" : fmt::format(" and {} more", sequence.places[k].more.size())));
   return 0;
 }
 

@@ -101,6 +101,17 @@ void FrameLoop::run() {
     progress.finish();
     fail(error);
   }
+  require_surface();
+}
+
+/// A whole run without any surface has failed, though there is nothing to go on with.
+void FrameLoop::require_surface() {
+  const std::vector<FrameRow>& rows = table_.rows();
+  if (!surface_ || std::any_of(rows.begin(), rows.end(), [](const FrameRow& row) { return row.vertices > 0; })) return;
+  const std::string message =
+      "no frame has a surface: " + why_no_surface(rows, nearer_state(source_->state()).positions, source_->spacing());
+  log_.detail(message);
+  throw RunError(message);
 }
 
 void FrameLoop::go_through_frames(Progress& progress) {
@@ -266,10 +277,6 @@ void FrameLoop::finish() {
   log_.info("done: " + directory_.root().string());
   if (!log_.failure().empty()) log_.warning("log.txt is not complete: " + log_.failure());
   recorder_.finish(scene_.frames);
-  if (surface_ &&
-      std::all_of(table_.rows().begin(), table_.rows().end(), [](const FrameRow& row) { return row.vertices == 0; }))
-    throw RunError("no frame has a surface: " +
-                   why_no_surface(table_.rows(), nearer_state(source_->state()).positions, source_->spacing()));
 }
 
 }  // namespace flowskin::tools

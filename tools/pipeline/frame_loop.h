@@ -66,6 +66,7 @@ class FrameLoop {
   [[noreturn]] void fail(const std::exception& error);
   std::string what_is_kept() const;
   void finish();
+  void require_surface();
 
   const TrackedSurface* surface() const { return surface_ ? &*surface_ : nullptr; }
 

@@ -41,7 +41,8 @@ void say(const std::string& text) {
   }
 }
 
-void put(const std::string& text) {
+void put(const std::string& result) {
+  const std::string text = printable(result);
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) note_output_error();
 }

@@ -39,12 +39,12 @@ RunLog::~RunLog() = default;
 
 void RunLog::info(const std::string& message) {
   if (!impl_->quiet) say_line(message);
-  impl_->logger->info("{}", message);
+  impl_->logger->info("{}", printable(message));
 }
-void RunLog::detail(const std::string& message) { impl_->logger->debug("{}", message); }
+void RunLog::detail(const std::string& message) { impl_->logger->debug("{}", printable(message)); }
 void RunLog::warning(const std::string& message) {
   say_line(message);
-  impl_->logger->warn("{}", message);
+  impl_->logger->warn("{}", printable(message));
 }
 const std::string& RunLog::failure() const { return impl_->failure; }
 
