@@ -264,7 +264,8 @@ void take_constant_time(ParticleTable& table) {
   for (const auto& [name, values] : table.columns) {
     const auto meaning = time_name(name);
     if (!meaning || values.empty() || table.faults.contains(name) || !std::isfinite(values.front())) continue;
-    const bool constant = std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); });
+    const bool constant =
+        std::all_of(values.begin(), values.end(), [first = values.front()](double v) { return v == first; });
     if (meaning->is_step && constant && !table.step && are_whole({{values.front(), {}}}))
       table.step = whole_number_of(values.front());
     if (!meaning->is_step && (constant || meaning->is_sure) && (!table.time || meaning->is_sure))

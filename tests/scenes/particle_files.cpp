@@ -174,7 +174,8 @@ TEST(ParticleFiles, OtherVtkFilesAreErrorsThatSayWhatToDo) {
   EXPECT_THAT(error_of_file("<VTKFile type=\"PPolyData\"/>"), HasSubstr("parallel run"));
   EXPECT_THAT(error_of_file("<VTKFile type=\"PolyData\" compressor=\"vtkLZMADataCompressor\"/>"),
               AllOf(HasSubstr("vtkLZMADataCompressor"), HasSubstr("zlib")));
-  EXPECT_THAT(error_of_file("<html></html>"), HasSubstr("VTKFile"));
+  EXPECT_THAT(error_of_file("<points></points>"), HasSubstr("VTKFile"));
+  EXPECT_THAT(error_of_file("<html></html>"), HasSubstr("a web page"));
   EXPECT_THAT(error_of_file("# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\n"),
               AllOf(HasSubstr("line 5"), HasSubstr("POLYDATA")));
   EXPECT_THAT(error_of_file("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n1 2 x\n"),
