@@ -194,9 +194,11 @@ TEST(AnyonesFiles, ThatCannotBeReadAreNamedByTheirContent) {
       {"<!DOCTYPE html><html>", "web page"},
       {"LAMMPS data file\n\n1 atoms\n\n0 1 xlo xhi\n", "write_dump"},
       {"<VTKFile type=\"vtkMultiBlockDataSet\"/>", "Merge Blocks"}};
-  for (const auto& [bytes, word] : files)
+  for (const auto& file : files) {
+    const std::string bytes = file[0], word = file[1];
     EXPECT_THAT(message_of<InputError>([&] { parse_particle_steps(bytes, "a"); }),
                 AllOf(HasSubstr("cannot be read, this is"), HasSubstr(word)));
+  }
 }
 
 TEST(AnyonesFiles, ThatCannotBeReadAreNamedByTheirEndingsAtLast) {
