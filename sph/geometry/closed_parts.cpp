@@ -95,7 +95,8 @@ ClosedParts::ClosedParts(const TriangleMesh& mesh) {
   for (const auto& [edge, at] : users) {
     int balance = 0;
     for (const std::uint32_t i : at)
-      for_each_edge(triangles[i], [&](const Edge& other, int sign) { balance += other == edge ? sign : 0; });
+      for_each_edge(triangles[i],
+                    [&, &wanted = edge](const Edge& other, int sign) { balance += other == wanted ? sign : 0; });
     if (balance != 0) is_oriented[part[at[0]]] = 0;
   }
   for (std::size_t i = 0; i < triangles.size(); ++i) {

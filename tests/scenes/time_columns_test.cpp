@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
+#include "common/errors.h"
 #include "io_fixture.h"
 #include "scenes/io/particle_file.h"
 

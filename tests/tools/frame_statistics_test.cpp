@@ -1,11 +1,13 @@
 // frames.csv: its columns, and the worst of a run.
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "tests/tools/io_fixture.h"
 #include "tools/pipeline/surface_statistics.h"
 #include "tools/report/frames_csv.h"
 #include "tools/report/worst_frames.h"
+#include "tracking/advection/particle_paths.h"
 #include "tracking/field/metaballs/metaball_field.h"
 
 namespace flowskin::tools::frame_statistics_test {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/number_text.h"
+#include "tracking/field/metaballs/field_parts.h"
 
 namespace flowskin::tracking {
 namespace {
